@@ -132,7 +132,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         const int images = int(sequence.images.size());
         which.skip = what.skip_images == RecordingSettings::kSkipHalf
                          ? images / 2
-                         : std::clamp(what.skip_images, 0, images - 1);
+                         : std::min(what.skip_images, images - 1);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
         require_scored(sequence, which);

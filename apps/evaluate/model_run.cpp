@@ -31,9 +31,7 @@ void ModelRun::push(const EventWindow& event_window) {
 
 void ModelRun::finish() {
     renderer_.finish();
-    render_what_is_ready();
-    not_rendered_ += int(queries_.size());
-    queries_.clear();
+    render_what_is_ready();  // what is not even now lies outside the windows
 }
 
 void ModelRun::render_what_is_ready() {

@@ -191,9 +191,7 @@ void for_each_cut_window(const ReferenceSequence& sequence, const std::string& w
         while (slicer.next(event_window)) use(event_window);
     }
     if (filter != nullptr) flush_filtered(slicer, *filter, left);
-    SensorTime end = sequence.images.back().t;
-    if (!events.empty()) end = std::max(end, events.back().t);
-    slicer.advance(end);
+    slicer.advance(sequence.images.back().t);
     slicer.finish();
     while (slicer.next(event_window)) use(event_window);
 }

@@ -44,11 +44,12 @@ public:
         return *value;
     }
 
-    int pixels() const {
-        const double value = number();
-        if (!(value >= 1 && value <= kMaxPixels) || value != std::floor(value))
-            refuse("1 to " + std::to_string(kMaxPixels), text());
-        return int(value);
+    int pixels() const { return pixels(number()); }
+    int pixels(double value) const {
+        if (value >= 1 && value <= kMaxPixels && value == std::floor(value)) return int(value);
+        char found[32];
+        std::snprintf(found, sizeof found, "%g", value);
+        refuse("1 to " + std::to_string(kMaxPixels), found);
     }
 
     std::vector<double> numbers() const {
@@ -132,12 +133,10 @@ Calibration read_kalibr(const Reader& camera) {
             .refuse("pinhole, which is all that CameraInfo can say",
                     "'" + camera.at("camera_model").text() + "'");
     Calibration calibration;
-    const auto size = camera.at("resolution").numbers_of<2>();
-    calibration.width = int(size[0]);
-    calibration.height = int(size[1]);
-    if (!(size[0] >= 1 && size[0] <= kMaxPixels && size[1] >= 1 && size[1] <= kMaxPixels))
-        camera.at("resolution")
-            .refuse("1 to " + std::to_string(kMaxPixels) + " each way", "more or less");
+    const Reader resolution = camera.at("resolution");
+    const auto [width, height] = resolution.numbers_of<2>();
+    calibration.width = resolution.pixels(width);
+    calibration.height = resolution.pixels(height);
     const Reader intrinsics = camera.at("intrinsics");
     const auto [fx, fy, cx, cy] = intrinsics.numbers_of<4>();
     check_focal_lengths(intrinsics, fx, fy);

@@ -68,8 +68,7 @@ void Binner::restore(const std::vector<std::uint8_t>& ages) {
         throw Error(ErrorKind::input, "voxel grid: expected the ages of " +
                                           std::to_string(ages_.size()) + " pixels, found " +
                                           std::to_string(ages.size()));
-    std::ranges::transform(ages, ages_.begin(),
-                           [](std::uint8_t age) { return std::min(age, kOldest); });
+    ages_ = ages;  // clamped with the next window
 }
 
 void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept {

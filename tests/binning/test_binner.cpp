@@ -243,6 +243,20 @@ TEST(Binner, LeavesOutWhatIsOutsideTheSensorOrTheWindow) {
             EXPECT_EQ(values.values()[i], i % 9 == 8 ? 1.0F : 0.0F);
 }
 
+TEST(Binner, AGridTellsWhatItsWindowTells) {
+    EventWindow told = event_window_of({}, 100, 50);
+    told.gap_before = true;
+    told.arrived = HostTime{} + std::chrono::seconds{7};
+    const VoxelGrid first = grid_of(told, 2);
+    EXPECT_TRUE(first.gap_before && !first.reset_before);
+    EXPECT_EQ(first.arrived, told.arrived);
+    EXPECT_EQ(first.window.end, told.window.end);
+    told.reset_before = true;
+    told.gap_before = false;
+    const VoxelGrid second = grid_of(told, 2);
+    EXPECT_TRUE(second.reset_before && !second.gap_before);
+}
+
 TEST(Binner, AnEmptyWindowOfNoWidthIsAnEmptyGrid) {
     const VoxelGrid grid = grid_of(event_window_of({}, 100, 0), 2);
     EXPECT_EQ(grid.values(0, 0, 3), 0);

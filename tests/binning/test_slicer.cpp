@@ -96,6 +96,8 @@ TEST(Slicer, CountsEventsPerPixel) {
     std::vector<Kept> event_windows;
     take(slicer, event_windows);
     EXPECT_EQ(edges_of(event_windows), (Edges{{0, 6}, {6, 12}}));
+    settings.events_per_pixel = 0.01;
+    EXPECT_EQ(events_per_window(settings, 4, 3), 1U) << "none would be no window";
 }
 
 TEST(Slicer, CutsAtReferenceImagesThatComeEarlyOrLate) {

@@ -49,6 +49,15 @@ TEST(SlicerContent, ABurstOnAPartOfTheSensorCounts) {
     EXPECT_LT(longest(event_windows), 12'000);
 }
 
+TEST(SlicerContent, ASensorOfOneTileIsBusyWhereThatIsFull) {
+    Slicer slicer{by_content(.5), kSide, kSide};
+    slicer.push(moving(1, 1, 40, 100));
+    slicer.finish();
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
+    EXPECT_LT(longest(event_windows), 20'000) << ".5 events of each of 1024 pixels in 13 ms";
+}
+
 TEST(SlicerContent, OneHotPixelEndsNoWindow) {
     std::vector<Event> events;
     for (std::int64_t us = 1; us <= 200'000; us += 2) events.push_back(at(us, 7));

@@ -62,8 +62,16 @@ TEST(Slicer, AJumpOfHoursGivesAHandfulOfFrames) {
 
 /// Frames of an event window read up to two more, so that with lookahead a wide one would show all
 /// along what comes after it.
+TEST(Slicer, AJumpOfHoursGivesAHandfulOfFramesAlsoAfterTheClockBeganAnew) {
+    constexpr std::int64_t kHours = 10'000'000'000;
+    const auto event_windows = event_windows_of(
+        by_duration(1000), {at(5'000'001), at(5'000'500), at(10), at(900), at(kHours)});
+    EXPECT_LT(event_windows.size(), 100U);
+    EXPECT_EQ(event_windows.back().end_us, kHours);
+}
+
 TEST(Slicer, TheLastWindowsOfALongSilenceComeOneByOne) {
-    for (const std::int64_t silence_us : {18'500, 19'500, 20'500, 60'500}) {
+    for (const std::int64_t silence_us : {18'500, 19'500, 20'000, 20'500, 60'500}) {
         const auto event_windows =
             event_windows_of(by_duration(1000), {at(1), at(1 + silence_us), at(2 + silence_us)});
         ASSERT_GT(event_windows.size(), 3U);
@@ -272,17 +280,21 @@ TEST(Slicer, BoundsMemoryByEndingFramesAndLeavingOutWhatNoCameraSends) {
 TEST(Slicer, ResetIsAsConstructed) {
     std::mt19937 rng{5};
     const auto events = eventful_stream(rng);
-    Slicer slicer(by_duration(1000), 240, 180);
-    slicer.push(events);
-    slicer.mark_gap();
-    slicer.finish();
-    slicer.reset();
-    slicer.push(events);
-    std::vector<Kept> event_windows;
-    take(slicer, event_windows);
-    slicer.finish();
-    take(slicer, event_windows);
-    EXPECT_EQ(event_windows, event_windows_of(by_duration(1000), events));
+    for (const SlicerSettings& settings :
+         {by_duration(1000), by_count(50, 5000), by_reference(5000), by_content(.02, 5000)}) {
+        Slicer slicer(settings, 240, 180);
+        for (std::size_t i = 0; i < events.size(); i += 100)  // images of what comes then, too
+            slicer.push_reference(events[i].t + SensorDuration{321});
+        slicer.push({events.data(), events.size() / 2});
+        slicer.mark_gap();
+        slicer.reset();
+        slicer.push(events);
+        std::vector<Kept> event_windows;
+        take(slicer, event_windows);
+        slicer.finish();
+        take(slicer, event_windows);
+        EXPECT_EQ(event_windows, event_windows_of(settings, events));
+    }
 }
 
 TEST(Slicer, AnEmptyStreamHasNoFrames) {

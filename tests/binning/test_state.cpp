@@ -44,6 +44,7 @@ TEST(SlicerState, AnotherGoesOnWithTheSameWindows) {
             std::vector<Kept> ours, theirs;
             first.push(part(events, 0, stop));
             take(first, ours);
+            if (stop > 1) first.mark_gap();
             const auto state = first.state();
             ASSERT_TRUE(state);
             second.restore(*state);
@@ -57,8 +58,26 @@ TEST(SlicerState, AnotherGoesOnWithTheSameWindows) {
                 take(*slicer, into);
             }
             EXPECT_EQ(ours, theirs) << stop;
-            EXPECT_FALSE(ours.empty());
+            ASSERT_FALSE(ours.empty());
+            EXPECT_EQ(ours.front().gap, stop > 1) << "what was lost before is told after";
         }
+}
+
+TEST(SlicerState, WhatAFilterHeldBackComesYetThoughItIsBeforeTheBeginAskedFor) {
+    Slicer first{by_duration(1000), 240, 180};
+    first.push(std::vector{at(1), at(2500)});
+    std::vector<Kept> windows;
+    take(first, windows);  // until 2000 us
+    SlicerSettings settings = by_duration(1000);
+    settings.begin = from_us(2600);
+    Slicer second{settings, 240, 180};
+    second.restore(*first.state());
+    second.push(std::vector{at(2550), at(3100)});
+    second.finish();
+    windows.clear();
+    take(second, windows);
+    ASSERT_EQ(windows.size(), 2U);
+    EXPECT_EQ(windows[0].events.size(), 2U);
 }
 
 TEST(SlicerState, ThereIsNoneOfWhatCannotGoOn) {

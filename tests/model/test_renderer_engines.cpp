@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <random>
 #include <utility>
@@ -124,6 +125,39 @@ TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
         EXPECT_LE(compare({model, 1, 1, with(Engine::fast)}, {model, 1, 1, with(Engine::plain)},
                           config, 1, 1, {{1, 1}, {3, 2}}),
                   kFloatTolerance);
+    }
+}
+
+TEST(Renderer, FramesOfEverySizeShowWhatTheSensorSawWhereItSawIt) {
+    constexpr int kHeight = 10, kWidth = 13;
+    // Steps between pixels of the frame that are as long as `of` steps of the sensor.
+    constexpr std::array<std::pair<int, int>, 3> kSteps{{{1, 3}, {7, 3}, {2, 1}}};
+    for (const ModelConfig& config : every_kind()) {
+        const Model model = test::random_model(config, 3);
+        for (const Engine engine : {Engine::plain, Engine::fast}) {
+            Renderer renderer{model, kWidth, kHeight, with(engine)};
+            for (int k = 1; k <= 4; ++k) renderer.push(random_latent(config, kHeight, kWidth, k));
+            const auto frame_of = [&](int height, int width) {
+                RenderRequest request{.t = random_latent(config, 1, 1, 4).window.end,
+                                      .width = width,
+                                      .height = height};
+                Frame frame = renderer.make_output(request);
+                renderer.render(request, frame);
+                return frame;
+            };
+            const Frame plain_size = frame_of(kHeight, kWidth);
+            for (const auto& [steps, of] : kSteps) {
+                const Frame frame =
+                    frame_of((kHeight - 1) * steps / of + 1, (kWidth - 1) * steps / of + 1);
+                for (int y = 0; y * of < kHeight; ++y)
+                    for (int x = 0; x * of < kWidth; ++x) {
+                        EXPECT_NEAR(frame.intensity(y * steps, x * steps),
+                                    plain_size.intensity(y * of, x * of), kFloatTolerance);
+                        EXPECT_NEAR(frame.sigma(y * steps, x * steps),
+                                    plain_size.sigma(y * of, x * of), kFloatTolerance);
+                    }
+            }
+        }
     }
 }
 

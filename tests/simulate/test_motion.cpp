@@ -47,9 +47,69 @@ TEST(ThesisMotion, BeginsAtRestInItsRangesAndComesBack) {
             // Points lie in the table's ranges; a cubic may swing beyond by some.
             EXPECT_LT(std::abs(pose.x), 2 * 2 * settings.displacement_max);
             EXPECT_LT(std::abs(pose.angle), 2 * settings.angle_max);
-            EXPECT_GE(pose.scale_x, .1);
         }
     }
+}
+
+TEST(ThesisMotion, NeverTurnsTheImageOverWhereACubicSwingsBeyondItsPoints) {
+    const ThesisMotionSettings settings{.scale_max = 1, .linear_probability = 0};
+    double smallest = 1;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        const auto motion = thesis_motion(settings, Random{seed});
+        for (double t = 0; t < settings.duration_s; t += .05)
+            smallest = std::min({smallest, motion->at(t).scale_x, motion->at(t).scale_y});
+    }
+    EXPECT_EQ(smallest, .1);
+}
+
+/// In how many of 400 steps the x of a motion changes its speed.
+int bends(const ThesisMotionSettings& settings, std::uint64_t seed) {
+    const auto motion = thesis_motion(settings, Random{seed});
+    int found = 0;
+    for (int i = 1; i < 400; ++i) {
+        const auto x = [&](int k) { return motion->at(k * settings.duration_s / 400).x; };
+        found += std::abs(x(i - 1) - 2 * x(i) + x(i + 1)) > 1e-9;
+    }
+    return found;
+}
+
+TEST(ThesisMotion, GoesStraightBetweenAsManyPointsAsDrawnOrCurves) {
+    ThesisMotionSettings settings{.linear_probability = 1};
+    int fewest = 400, most = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        fewest = std::min(fewest, bends(settings, seed));
+        most = std::max(most, bends(settings, seed));
+    }
+    EXPECT_EQ(fewest, 0) << "2 points: straight from the first to the last";
+    EXPECT_GE(most, 8) << "10 points, 8 of them between the ends ...";
+    EXPECT_LE(most, 16) << "... and a bend may lie between two steps";
+    settings.linear_probability = 0;
+    int curved = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) curved += bends(settings, seed) > 390;
+    EXPECT_GT(curved, 45) << "all but the few of 2 points";
+}
+
+TEST(ThesisMotion, TransformsByScaleDisplacementAndRotation) {
+    const double a = .4, sx = 1.6, sy = .8, dx = .3, dy = -.2;
+    const Affine A = thesis_transform({.x = dx, .y = dy, .angle = a, .scale_x = sx, .scale_y = sy});
+    for (const Point p : {Point{0, 0}, Point{1, 0}, Point{0, 1}}) {
+        // R, then D, then S: the matrices of equations 3.7, 3.6 and 3.5.
+        const Point turned{std::cos(a) * p.x + std::sin(a) * p.y,
+                           -std::sin(a) * p.x + std::cos(a) * p.y};
+        EXPECT_NEAR(A(p).x, (turned.x - dx) / sx, 1e-12);
+        EXPECT_NEAR(A(p).y, (turned.y - dy) / sy, 1e-12);
+    }
+}
+
+TEST(ThesisMotion, ShowsThingsWhereTheMotionTookThem) {
+    const auto shown_at = [](const Pose& pose, Point in_image) {
+        return thesis_transform(pose).inverse()(in_image);
+    };
+    EXPECT_NEAR(shown_at({.x = 1}, {0, 0}).x, 1, 1e-12) << "the middle at the right edge";
+    EXPECT_NEAR(shown_at({.y = .5}, {0, 0}).y, .5, 1e-12) << "below the middle";
+    EXPECT_NEAR(shown_at({.scale_x = 2}, {.25, 0}).x, .5, 1e-12) << "twice as wide";
+    EXPECT_NEAR(shown_at({.angle = std::numbers::pi / 2}, {.5, 0}).y, .5, 1e-12)
+        << "what was right of the middle is below it";
 }
 
 TEST(WanderMotion, KeepsItsSpeedOnAverage) {
@@ -69,17 +129,51 @@ TEST(WanderMotion, KeepsItsSpeedOnAverage) {
     EXPECT_NEAR(total, 100, 4);
 }
 
+TEST(WanderMotion, RunsSmoothlyThroughTheEndsOfItsLegs) {
+    WanderSettings settings;
+    settings.linear_probability = 0;
+    settings.leg_s = {.1, .1};
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const auto motion = wander_motion(settings, 100, 50, {}, {}, Random{seed});
+        motion->prepare(3);
+        for (int leg = 1; leg < 20; ++leg) {
+            constexpr double kStep = 1e-6;
+            const auto x = [&](double s) { return motion->at(leg * .1 + s).x; };
+            const double before = (x(-kStep) - x(-2 * kStep)) / kStep;
+            const double after = (x(2 * kStep) - x(kStep)) / kStep;
+            EXPECT_NEAR(x(-kStep), x(kStep), .01) << "no jump";
+            EXPECT_NEAR(before, after, .1) << "nor a sudden change of speed, px/s";
+            // As fast as from the middle of the leg before to that of the leg after, about.
+            const double between = (x(.1) - x(-.1)) / .2;
+            EXPECT_NEAR(before, between, .1);
+        }
+    }
+}
+
 TEST(WanderMotion, StaysNearHome) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
-        const auto motion = wander_motion({}, 500, 10, {50, 50}, {0, 0, 100, 100}, Random{seed});
+        const auto motion = wander_motion({}, 20, 10, {50, 20}, {0, 0, 100, 40}, Random{seed});
         motion->prepare(100);
         int away = 0;
         for (int i = 0; i < 1000; ++i) {
             const Pose p = motion->at(i * .1);
-            away += p.x < -100 || p.x > 200 || p.y < -100 || p.y > 200;
+            away += p.x < -20 || p.x > 120 || p.y < -10 || p.y > 50;
         }
         EXPECT_LT(away, 100);
     }
+}
+
+TEST(WanderMotion, ThingsStartAtAnyAngleAndTheCameraUpright) {
+    int turned = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const auto thing = wander_motion({}, 50, 10, {50, 50}, {0, 0, 100, 100}, Random{seed});
+        const auto camera = wander_motion({}, 50, 10, {}, {}, Random{seed});
+        thing->prepare(1);
+        camera->prepare(1);
+        turned += std::abs(thing->at(0).angle) > .3;
+        EXPECT_EQ(camera->at(0).angle, 0);
+    }
+    EXPECT_GT(turned, 15);
 }
 
 TEST(WanderMotion, DoesNotDependOnHowItIsPreparedOrForgotten) {
@@ -107,8 +201,13 @@ double way_from_start(const WanderSettings& settings) {
 TEST(WanderMotion, TremblesAboutOnePlaceWhereAskedFor) {
     WanderSettings settings;
     EXPECT_GT(way_from_start(settings), 500);
+    const double far = way_from_start(settings);
     settings.tremble = 1;
-    EXPECT_LT(way_from_start(settings), 250);
+    const double near = way_from_start(settings);
+    EXPECT_LT(near, 250);
+    settings.tremble = .5;
+    EXPECT_GT(way_from_start(settings), near + (far - near) / 4);
+    EXPECT_LT(way_from_start(settings), far - (far - near) / 4);
 }
 
 /// Share of the time in which a motion at 100 px/s goes slower than `px_s`.
@@ -132,6 +231,31 @@ TEST(WanderMotion, ChangesItsPaceWhereAskedFor) {
     settings.pace = {.02, 1};
     // Log-uniform: ln(.1 / .02) of ln(1 / .02) lies below a tenth of the full speed.
     EXPECT_NEAR(share_below(10, settings), std::log(5) / std::log(50), .12);
+    settings.pace_s = {1e4, 1e4};
+    EXPECT_LT(share_below(10, settings), .05) << "a change in hours";
+}
+
+TEST(WanderMotion, TurnsAndZoomsAtItsPaceToo) {
+    WanderSettings settings;
+    settings.spin_share = settings.zoom_share = {.3, .3};
+    settings.linear_probability = 1;
+    const auto turn_and_zoom = [&] {
+        double turn = 0, zoom = 0;
+        for (std::uint64_t seed = 0; seed < 20; ++seed) {
+            const auto motion = wander_motion(settings, 100, 50, {}, {}, Random{seed});
+            motion->prepare(5);
+            turn += std::abs(motion->at(5).angle);
+            zoom += std::abs(std::log(motion->at(5).scale_x));
+        }
+        return std::pair{turn, zoom};
+    };
+    settings.pace = {.999, .999};
+    settings.pace_s = {1e-9, 1e-9};  // from the first leg on
+    const auto usual = turn_and_zoom();
+    settings.pace = {.01, .01};
+    const auto slow = turn_and_zoom();
+    EXPECT_LT(slow.first, .1 * usual.first);
+    EXPECT_LT(slow.second, .1 * usual.second);
 }
 
 TEST(WanderMotion, MayBecomeFasterToo) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace eventide {
@@ -36,6 +37,65 @@ TEST(Scene, ShowsTheWholeImageAtTheStartOfAThesisScene) {
     EXPECT_NEAR(rendered(32, 30), 1, .02);
 }
 
+/// A scene of the thesis before an image whose grey values grow to the right, or downwards.
+Scene before_a_ramp(const SceneSettings& settings, std::uint64_t seed, bool downwards) {
+    GreyImage image(256, 256);
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x) image(y, x) = std::uint8_t(downwards ? y : x);
+    auto textures = std::make_shared<TextureLibrary>();
+    textures->add(image);
+    Scene scene{settings, textures, 65, 65, Random{seed}};
+    scene.prepare(10);
+    return scene;
+}
+
+/// From the sensor to the image, [-1, 1] each, as the grey values of both ramps tell it.
+Affine seen_transform(const Scene& to_the_right, const Scene& downwards, double t_s) {
+    const auto place_of = [&](const Scene& scene, double x, double y) {
+        Array2<float> one(1, 1);  // near the middle, where nothing is mirrored
+        scene.render(t_s, Affine::translation(32 + 32 * x, 32 + 32 * y), Scene::Show::grey, one);
+        return 2 * double(one(0, 0)) - 1;
+    };
+    Affine seen;
+    const auto row = [&](const Scene& scene, double& x, double& y, double& offset) {
+        constexpr double kNear = .1;
+        offset = place_of(scene, 0, 0);
+        x = (place_of(scene, kNear, 0) - offset) / kNear;
+        y = (place_of(scene, 0, kNear) - offset) / kNear;
+    };
+    row(to_the_right, seen.xx, seen.xy, seen.x0);
+    row(downwards, seen.yx, seen.yy, seen.y0);
+    return seen;
+}
+
+TEST(Scene, OfTheThesisIsTurnedThenDisplacedThenScaled) {
+    SceneSettings settings = simulation_preset("thesis_train").scene;
+    settings.thesis.control_points_max = 2;  // all values go straight from the start to the end
+    settings.thesis.displacement_max = .2;
+    settings.thesis.linear_probability = 1;
+    int turned = 0, stretched = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Scene right = before_a_ramp(settings, seed, false);
+        const Scene down = before_a_ramp(settings, seed, true);
+        const auto seen = [&](double share) {
+            return seen_transform(right, down, share * settings.thesis.duration_s);
+        };
+        const auto scale_x = [](const Affine& a) { return 1 / std::hypot(a.xx, a.xy); };
+        const auto scale_y = [](const Affine& a) { return 1 / std::hypot(a.yx, a.yy); };
+        const Affine half = seen(.5), whole = seen(1);
+        // Turned first: the image's axes stay at right angles on the sensor, whatever their scales.
+        EXPECT_NEAR(whole.xx * whole.yx + whole.xy * whole.yy, 0, .05) << seed;
+        EXPECT_NEAR(scale_x(whole) - 1, 2 * (scale_x(half) - 1), .05) << seed;
+        // Displaced after that, along the axes that the scale is of.
+        EXPECT_NEAR(whole.x0 * scale_x(whole), 2 * half.x0 * scale_x(half), .02) << seed;
+        EXPECT_NEAR(whole.y0 * scale_y(whole), 2 * half.y0 * scale_y(half), .02) << seed;
+        turned += std::abs(whole.xy) > .3;
+        stretched += std::abs(scale_x(whole) - scale_y(whole)) > .2;
+    }
+    EXPECT_GE(turned, 4);
+    EXPECT_GE(stretched, 4);
+}
+
 TEST(Scene, LightFollowsTheThesisToneCurve) {
     SceneSettings settings = simulation_preset("thesis_train").scene;
     settings.white_lux = {12000, 12000};
@@ -50,6 +110,70 @@ TEST(Scene, LightFollowsTheThesisToneCurve) {
         const double expected = 600 + (std::exp(1.5 * x) - 1) / (std::exp(1.5) - 1) * (12000 - 600);
         EXPECT_NEAR(light.values()[i], expected, 1);
     }
+}
+
+TEST(Scene, FaintScenesSpanNoMoreThanTheirContrast) {
+    SceneSettings settings;
+    settings.objects_max = 0;
+    settings.faint_probability = 1;
+    settings.faint_contrast = {.2, .2};
+    settings.dynamic_range = {20, 20};
+    settings.tone = {0, 0};  // linear: the light's range is that of the grey values
+    double darkest = 1, brightest = 0, widest = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Scene scene = make_scene(settings, seed);
+        Array2<float> light(100, 100);
+        scene.render(0, {5, 0, 0, 0, 5, 0}, Scene::Show::light, light);
+        const auto [low, high] = std::ranges::minmax(light.values());
+        const double span = double(high - low) / (scene.white_lux() * (1 - 1 / 20.));
+        EXPECT_LT(span, .205);
+        widest = std::max(widest, span);
+        darkest = std::min(darkest, double(low) / scene.white_lux());
+        brightest = std::max(brightest, double(high) / scene.white_lux());
+    }
+    EXPECT_GT(widest, .1);
+    EXPECT_LT(darkest, .2) << "some of them in the dark ...";
+    EXPECT_GT(brightest, .85) << "... and some in the light";
+}
+
+TEST(Scene, HasAsManyThingsAsTheMostAllowed) {
+    SceneSettings settings;
+    settings.objects_min = 0;
+    settings.objects_max = 1;
+    settings.objects_skew = 1;
+    settings.object_size = {2.5, 2.5};
+    settings.object_reach = 0;
+    settings.still_background = 1;
+    settings.pause_start = 0;
+    settings.object_pauses = 0;
+    settings.wander.speed = settings.wander.usual_speed = {100, 100};
+    settings.object_speed = {1, 1};
+    settings.flicker_probability = settings.light_change_probability = 0;
+    settings.object_flicker_probability = 0;
+    int with_one = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed)
+        with_one += make_scene(settings, seed).step(.1) < settings.step_s.high;
+    EXPECT_GT(with_one, 10) << "half of them";
+    EXPECT_LT(with_one, 30);
+}
+
+TEST(Scene, LampsOfAllMainsFlicker) {
+    SceneSettings settings;
+    settings.flicker_probability = 1;
+    settings.flicker_depth = {.5, .5};
+    std::set<int> frequencies;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const Scene scene = make_scene(settings, seed);
+        for (const int hz : {120, 100, 60, 50}) {  // a lamp of 100 Hz repeats itself at 50, too
+            const bool repeats = std::abs(scene.flicker(.0013) - scene.flicker(.0013 + 1. / hz)) +
+                                     std::abs(scene.flicker(.004) - scene.flicker(.004 + 1. / hz)) <
+                                 1e-6;
+            if (!repeats) continue;
+            frequencies.insert(hz);
+            break;
+        }
+    }
+    EXPECT_EQ(frequencies, (std::set{50, 60, 100, 120}));
 }
 
 TEST(Scene, IsDarkestAndBrightestAsTheDynamicRangeSays) {

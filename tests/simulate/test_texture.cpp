@@ -130,6 +130,24 @@ TEST(Shape, CoversItsAreaAtAnySizeAndPlace) {
         }
 }
 
+TEST(Shape, ARingIsAsSoftAtItsHoleAsAtItsRim) {
+    const double radius = 100, softness = 12;
+    const Shape ring = Shape::ring(.5);
+    const ShapeView view{ring, Affine::scale(1 / radius, 1 / radius), softness};
+    std::vector<float> row(112);  // from the middle outwards
+    view.cover(0, 0, row);
+    for (int d = -5; d <= 5; ++d) {
+        EXPECT_NEAR(row[std::size_t(50 + d)], .5 + d / softness, .03) << d;
+        EXPECT_NEAR(row[std::size_t(100 + d)], .5 - d / softness, .03) << d;
+    }
+}
+
+TEST(Shape, NoTwoPolygonsAreAlike) {
+    Random random{7};
+    const Shape a = Shape::polygon(5, random), b = Shape::polygon(5, random);
+    EXPECT_GT(std::abs(a.side[0].nx - b.side[0].nx), .01);
+}
+
 TEST(Shape, PolygonsTouchTheUnitCircleFromWithin) {
     Random random{9};
     for (int corners = 3; corners <= 8; ++corners) {

@@ -172,7 +172,7 @@ ControlCurve::ControlCurve(std::vector<double> values, bool cubic) : values_(std
 
 double ControlCurve::at(double share) const {
     const std::size_t last = values_.size() - 1;
-    const double x = std::clamp(share, 0.0, 1.0) * double(last);
+    const double x = share * double(last);
     const std::size_t k = std::min(std::size_t(x), last - 1);
     const double b = x - double(k), a = 1 - b;
     return a * values_[k] + b * values_[k + 1] +
@@ -181,6 +181,12 @@ double ControlCurve::at(double share) const {
 
 std::unique_ptr<Motion> thesis_motion(const ThesisMotionSettings& settings, Random random) {
     return std::make_unique<ThesisMotion>(settings, random);
+}
+
+Affine thesis_transform(const Pose& pose) {
+    return Affine::scale(1 / pose.scale_x, 1 / pose.scale_y)
+        .after(Affine::translation(-pose.x, -pose.y))
+        .after(Affine::rotation(-pose.angle));
 }
 
 std::unique_ptr<Motion> wander_motion(const WanderSettings& settings, double speed, double radius,

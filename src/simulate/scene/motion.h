@@ -58,6 +58,12 @@ private:
 
 std::unique_ptr<Motion> thesis_motion(const ThesisMotionSettings& settings, Random random);
 
+/// The thesis' A = S D R (its equations 3.5 to 3.7): where in the image a place of the sensor
+/// looks; [-1, 1] are the edges of both. A scale of 2 shows things twice as large, a positive
+/// displacement moves them right and down (1 takes the middle to the edge), a positive angle turns
+/// them from the x axis towards the y axis.
+Affine thesis_transform(const Pose& pose);
+
 /// Where something may roam; the legs turn back at its edge. Empty (x1 <= x0): anywhere.
 struct Home {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -171,7 +171,8 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
     layers_.push_back(std::move(layer));
 }
 
-/// An eighth of the shorter side across, always in view, and as bright all over.
+/// An eighth of the shorter side across, in view (but for moments, where things are fast), and as
+/// bright all over.
 void Scene::add_lamp(const SceneSettings& settings) {
     Layer layer;
     layer.texture = &(*textures_)[0];
@@ -220,14 +221,10 @@ Affine Scene::to_local(const Layer& layer, double scene_s) const {
             .after(scale)
             .inverse();
     }
-    const Affine shrink = Affine::scale(1 / pose.scale_x, 1 / pose.scale_y);
-    if (thesis_)  // A = S D R
-        return shrink.after(Affine::translation(-pose.x, -pose.y))
-            .after(Affine::rotation(-pose.angle))
-            .after(normalised(width_, height_));
+    if (thesis_) return thesis_transform(pose).after(normalised(width_, height_));
     // Spin and zoom are about the view's centre, wherever it has wandered to.
     return Affine::translation(pose.x, pose.y)
-        .after(shrink)
+        .after(Affine::scale(1 / pose.scale_x, 1 / pose.scale_y))
         .after(Affine::rotation(-pose.angle))
         .after(Affine::translation(-(width_ - 1) / 2.0, -(height_ - 1) / 2.0));
 }

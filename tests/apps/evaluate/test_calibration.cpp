@@ -29,6 +29,40 @@ TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
     EXPECT_NE(load_model(calibrated).config.card.find("calibrated"), std::string::npos);
 }
 
+TEST(Calibration, GoesOnFromTheFactorThatTheModelHas) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("calibrated_twice"), .9, .001, .1)};
+    EvaluateSettings how = small_model();
+    const auto calibrated = [&](const char* name) {
+        const SigmaCalibration found =
+            calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
+        const fs::path to = fresh_folder(std::string("calibrated_") + name) / "model.safetensors";
+        write_calibrated(how.model, to, found, true);
+        how.model = to;
+        return found;
+    };
+    const SigmaCalibration first = calibrated("first");
+    EXPECT_GT(std::abs(first.picp80_before - .8), .05);
+    EXPECT_NE(first.ll_before, first.ll_after);
+    const SigmaCalibration second = calibrated("second");
+    EXPECT_NEAR(second.factor, 1, .02) << "of what is calibrated";
+    EXPECT_NEAR(second.picp80_before, .8, .02);
+    EXPECT_NEAR(load_model(how.model).config.sigma_scale, first.factor * second.factor, 1e-3);
+}
+
+TEST(Calibration, CautiouslyLeavesOutSequencesWithoutSigma) {
+    EvaluateReport report;
+    SequenceReport known;
+    Array2<float> mu(12, 12), sigma(12, 12), truth(12, 12);
+    std::ranges::fill(mu.values(), .5F);
+    std::ranges::fill(sigma.values(), .4F);
+    std::ranges::fill(truth.values(), .6F);
+    known.sigma_scale.add(mu, sigma, truth);
+    report.observations.sigma_scale = known.sigma_scale;
+    report.sequences = {known, SequenceReport{}};
+    EXPECT_NEAR(calibrate(report, CalibrationRule::cautious).factor, .25 / 1.2816, .01);
+}
+
 TEST(Calibration, IsWrittenWithTheRuleItHoldsFor) {
     RecordingSettings what;
     what.recordings = {write_recording(fresh_folder("calibration_rule"), .9, .001, .1)};

@@ -60,6 +60,25 @@ TEST(EvaluateFolders, LeaveOutNoSequenceInSilence) {
               "two: expected as many images as references, found 0 and 1");
 }
 
+TEST(EvaluateFolders, CompareImagesInTheOrderOfTheirNames) {
+    const fs::path folder = fresh_folder("order");
+    const auto write = [&](const char* side, const char* sequence, int i) {
+        fs::create_directories(folder / side / sequence);
+        const std::string name = std::string{side} + std::to_string(100 + i) + ".png";
+        write_image(folder / side / sequence / name, test_image(kHeight, kWidth, i));
+    };
+    for (int i = 0; i < 20; ++i) write("frames", "b", i);
+    for (int i = 19; i >= 0; --i) write("references", "b", i);
+    for (const char* sequence : {"d", "a", "c"})
+        for (const char* side : {"frames", "references"}) write(side, sequence, 1);
+    const EvaluateReport report = evaluate_folders(folder / "frames", folder / "references", {});
+    std::vector<std::string> names;
+    for (const SequenceReport& sequence : report.sequences)
+        names.push_back(sequence.scores.sequence);
+    EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "c", "d"}));
+    EXPECT_EQ(report.overall.raw.mse, 0);
+}
+
 TEST(EvaluateFolders, TakeImagesWhoseExtensionIsInCapitals) {
     const fs::path folder = fresh_folder("capitals");
     for (const char* side : {"frames", "references"}) {

@@ -1,8 +1,10 @@
 // Whole evaluations of small recordings made here, and of real ones.
 #include "apps/evaluate/evaluate.h"
+#include "apps/evaluate/evaluate_recordings.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
 #include "tests/apps/evaluate/small_model.h"
+#include "tests/support/flickering_light.h"
 #include "tests/support/keep_in.h"
 
 #include <gtest/gtest.h>
@@ -74,6 +76,67 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
         EXPECT_EQ(report.overall.frames, 8);
         EXPECT_NEAR(report.sequences[0].frames[0].time_s, .1, 1e-6);
     }
+}
+
+TEST(EvaluateRecordings, CompareImagesThatCameAfterTheLastEvent) {
+    const fs::path folder = write_recording(fresh_folder("after_events"), .9, .001, .1);
+    {
+        std::ofstream images{folder / "images.txt", std::ios::app};
+        images << "0.95 images/frame_108.png\n";
+    }
+    RecordingSettings what;
+    what.recordings = {folder};
+    what.skip_images = 0;
+    what.window = "20ms";
+    const EvaluateReport report = evaluate_recordings(what, small_model());
+    EXPECT_EQ(report.overall.frames, 10);
+    EXPECT_EQ(report.sequences[0].not_rendered, 0);
+}
+
+TEST(EvaluateRecordings, SayHowManyImagesLieOutsideTheEventWindows) {
+    const fs::path folder = fresh_folder("early_images");
+    write_recording(folder, .9, .001, .1);
+    {
+        std::ofstream events{folder / "events.txt"};  // from .45 s on
+        events << std::fixed;
+        for (int i = 450; i < 900; ++i) events << i * .001 << " 3 4 1\n";
+    }
+    RecordingSettings what;
+    what.recordings = {folder};
+    what.skip_images = 0;
+    what.window = "20ms";
+    const EvaluateReport report = evaluate_recordings(what, small_model());
+    EXPECT_EQ(report.overall.frames, 4) << "those at .5 to .8 s";
+    EXPECT_EQ(report.sequences[0].not_rendered, 5);
+    ASSERT_EQ(report.notes.size(), 1U);
+    EXPECT_EQ(report.notes[0],
+              "eventide_early_images: 5 references lie outside the event windows "
+              "and were not compared");
+}
+
+TEST(EvaluateRecordings, LoseNoEventThatWaitedForTheSecondOfALampsPair) {
+    ReferenceSequence sequence{"lamp", 32, 24, {}, {}, {}, {}, {}};
+    sequence.events = lamp_events({});
+    const SensorTime end = sequence.events.back().t + SensorDuration{1000};
+    for (std::uint16_t x = 0; x < 20; ++x) sequence.events.push_back({end, x, 3, Polarity::on});
+    for (const SensorTime t : {end - SensorDuration{100'000}, end - SensorDuration{1}, end}) {
+        ReferenceImage& image = sequence.images.emplace_back();
+        image.t = t;
+        image.pixels = Array2<std::uint16_t>(24, 32);
+    }
+    const Evaluation evaluation{"a lamp", small_model()};
+    const SequenceResult result = evaluate_sequence(evaluation, sequence, "reference", {});
+    ASSERT_EQ(result.report.frames.size(), 3U);
+    EXPECT_NEAR(result.report.frames[2].events_per_pixel, 20. / (32 * 24), 1e-9);
+}
+
+TEST(EvaluateRecordings, CountEventsByTheSensorsPixels) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("per_pixel"), .35, .001, .1)};
+    const EvaluateReport report = evaluate_recordings(what, small_model());
+    ASSERT_FALSE(report.sequences[0].frames.empty());
+    EXPECT_NEAR(report.sequences[0].frames.back().events_per_pixel, 100. / (kWidth * kHeight),
+                1e-9);
 }
 
 TEST(EvaluateRecordings, APartIsScoredByAModelThatSawWhatWasBefore) {
@@ -164,6 +227,14 @@ TEST(EvaluateRecordings, NameWhatCannotBeUsed) {
     EXPECT_THROW(evaluate_recordings(what, small_model()), Error);
     what.recordings = {fs::path{testing::TempDir()} / "eventide_nothing_here"};
     EXPECT_THROW(evaluate_recordings(what, small_model()), Error);
+    what.from_s = what.to_s = .5;
+    try {
+        evaluate_recordings(what, small_model());
+        ADD_FAILURE() << "a part without length was taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find("--to: expected a time after --from"), 0U);
+    }
+    what.from_s = what.to_s = {};
     EvaluateSettings how = small_model();
     how.lookahead = 3;
     EXPECT_THROW(evaluate_recordings(what, how), Error);

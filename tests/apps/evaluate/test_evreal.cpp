@@ -58,6 +58,24 @@ TEST(Evreal, SaysWhichSequenceHasNoImageInItsCut) {
     EXPECT_EQ(report.notes[0], "boxes_6dof: none of its 5 images lies in the cut, 5 to 20 s");
 }
 
+TEST(Evreal, NeverTakesTheLastImageOfAWholeRecording) {
+    const fs::path dataset = fresh_folder("ecd_two");
+    write_recording(dataset / "two_images", .2, .002, .1);
+    EXPECT_EQ(evaluate_evreal(dataset, small_model()).overall.frames, 1);
+}
+
+TEST(Evreal, SaysWhereNumbersMustNotBeComparedWithItsTables) {
+    const fs::path dataset = fresh_folder("ecd_lookahead");
+    write_recording(dataset / "a", .3, .002, .1);
+    EvaluateSettings how = small_model();
+    EXPECT_TRUE(evaluate_evreal(dataset, how).notes.empty());
+    how.lookahead = 2;
+    const EvaluateReport ahead = evaluate_evreal(dataset, how);
+    ASSERT_EQ(ahead.notes.size(), 1U);
+    EXPECT_EQ(ahead.notes[0],
+              "EVREAL's tables are without lookahead: these numbers saw 2 event windows more");
+}
+
 TEST(Evreal, StartsEachSequenceAnew) {
     const fs::path dataset = fresh_folder("ecd_twice");
     write_recording(dataset / "a", .6, .002, .1);
@@ -240,6 +258,26 @@ TEST(Evreal, TakesEventsOfOneTimeInTheirOrder) {
     EXPECT_EQ(sequence.events[1], (Event{from_us(200'000), 1, 1, Polarity::on}));
     EXPECT_EQ(sequence.events[2], (Event{from_us(200'000), 2, 1, Polarity::off}));
     EXPECT_EQ(sequence.images.size(), 2U);
+}
+
+TEST(Evreal, LeavesOutEventsBesideTheSensor) {
+    const fs::path folder = write_arrays("beside", {.1, .2, .3}, {.1, .2, .3});
+    write_npy<std::int64_t>(folder / "events_xy.npy", "<i8", "3, 2", {3, 0, 2, 1, 0, 2});
+    const auto sequence = read_evreal_sequence(folder, {}, {});
+    ASSERT_EQ(sequence.events.size(), 1U) << "of 3 x 2 px";
+    EXPECT_EQ(sequence.events[0].x, 2);
+}
+
+TEST(Evreal, LosesNoEventOfArraysThatAreReadInParts) {
+    constexpr std::size_t kEvents = (1 << 20) + 3;
+    const fs::path folder = write_arrays("long", {.1, .2, .3}, {.1, .2, .3});
+    std::vector<double> ts(kEvents);
+    for (std::size_t i = 0; i < kEvents; ++i) ts[i] = 1e-6 * double(i);
+    const std::string n = std::to_string(kEvents);
+    write_npy(folder / "events_ts.npy", "<f8", n + ",", ts);
+    write_npy(folder / "events_xy.npy", "|u1", n + ", 2", std::vector<std::uint8_t>(2 * kEvents));
+    write_npy(folder / "events_p.npy", "|u1", n + ",", std::vector<std::uint8_t>(kEvents));
+    EXPECT_EQ(read_evreal_sequence(folder, {}, {}).events.size(), kEvents);
 }
 
 TEST(Evreal, RefusesSensorsLargerThanAny) {

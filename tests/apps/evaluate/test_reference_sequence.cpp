@@ -3,9 +3,11 @@
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
+#include "tests/support/flickering_light.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <vector>
@@ -92,6 +94,47 @@ TEST(ImageTimes, OneThatLiesAfterTheNextIsTheMiddleOfItsNeighbours) {
     EXPECT_EQ(mended({40, 10, 20}), (Times{10, 20, 40}));
     EXPECT_EQ(mended({7}), (Times{7}));
     EXPECT_EQ(mended({}), Times{});
+}
+
+TEST(ReferenceWindows, OfAnImageThatIsStoredTwiceAreOne) {
+    ReferenceSequence sequence;
+    for (const int t : {10, 10, 30}) sequence.images.emplace_back().t = from_us(t);
+    std::vector<SensorTime> ends;
+    for_each_reference_window(sequence,
+                              [&](const EventWindow& cut) { ends.push_back(cut.window.end); });
+    EXPECT_EQ(ends, (std::vector{from_us(10), from_us(30)}));
+}
+
+/// Events of one pixel each millisecond for 100 ms; images at 40, 75 and 130 ms.
+ReferenceSequence short_sequence() {
+    ReferenceSequence sequence{"short", 8, 8, {}, {}, {}, {}, {}};
+    for (int ms = 0; ms < 100; ++ms)
+        sequence.events.push_back({from_us(1000 * ms), 3, 3, Polarity::on});
+    for (const int ms : {40, 75, 130}) sequence.images.emplace_back().t = from_us(1000 * ms);
+    return sequence;
+}
+
+TEST(CutWindows, MayEndWhereTheImagesAre) {
+    std::vector<SensorTime> ends;
+    for_each_cut_window(short_sequence(), "aps", nullptr,
+                        [&](const EventWindow& cut) { ends.push_back(cut.window.end); });
+    EXPECT_EQ(ends, (std::vector{from_us(40'000), from_us(75'000), from_us(130'000)}));
+}
+
+TEST(CutWindows, HoldWhatAFilterHeldBackUntilTheEnd) {
+    ReferenceSequence sequence{"lamp", 32, 24, {}, {}, {}, {}, {}};
+    sequence.events = lamp_events({});
+    const SensorTime end = sequence.events.back().t + SensorDuration{1000};
+    // Each waits for the event of the other polarity that a lamp would make it fire.
+    for (std::uint16_t x = 0; x < 20; ++x) sequence.events.push_back({end, x, 3, Polarity::on});
+    sequence.images.emplace_back().t = end;
+    const auto filter = event_filter(
+        {.hot_pixels = "off", .noise_filter = "off", .lamp_flicker = "16ms"}, {}, 32, 24);
+    std::size_t at_the_end = 0;
+    for_each_cut_window(sequence, "10ms", filter.get(), [&](const EventWindow& cut) {
+        at_the_end += std::size_t(std::ranges::count(cut.events, end, &Event::t));
+    });
+    EXPECT_EQ(at_the_end, 20U);
 }
 
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {

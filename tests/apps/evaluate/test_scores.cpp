@@ -60,6 +60,12 @@ TEST(Judge, SigmaIsThatOfTheClippedFrame) {
     EXPECT_NEAR(*scores.ll, -.5 * std::log(2 * std::numbers::pi) - ln_sigma - .5 * z2, 1e-5);
 }
 
+TEST(Judge, MeanSigmaIsThatOfEveryPixelOfAWideImage) {
+    Array2<float> wide(12, 24), sigma(12, 24);
+    std::ranges::fill(sigma.values(), .2F);
+    EXPECT_NEAR(*Judge{nullptr}.judge(wide, sigma, wide).mean_sigma, .2, 1e-6);
+}
+
 TEST(Judge, SumsUpWhatFiguresShow) {
     Judge judge{nullptr};
     judge.judge(all_of(.5F), all_of(.1F), stripes({.5F, .6F, .7F, .8F}));
@@ -157,6 +163,13 @@ TEST(Judge, CorrelatesPatchesOf16PixelsWithTheirMedianSigma) {
     EXPECT_NEAR(*scores.lpips_corr, *correlation(spread(errors, doubts)), 1e-9);
     EXPECT_NEAR(*scores.raw.lpips, lpips.distance(lpips.features(frame), lpips.features(truth)),
                 1e-9);
+    const Array2<float> fitted = clipped(applied(affine_fit(frame, truth), frame));
+    EXPECT_NEAR(*scores.affine.lpips, lpips.distance(lpips.features(fitted), lpips.features(truth)),
+                1e-9);
+    const Observations::PatchSize& of_16 = judge.observations().patch_sizes[2];
+    EXPECT_EQ(of_16.size, 16);
+    EXPECT_NEAR(of_16.sum, *scores.lpips_corr, 1e-12);
+    EXPECT_NEAR(of_16.squares, *scores.lpips_corr * *scores.lpips_corr, 1e-12);
     std::uint64_t patches = 0;
     for (const Observations::PatchBin& bin : judge.observations().patch_bins)
         patches += bin.patches;

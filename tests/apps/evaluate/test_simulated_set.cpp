@@ -41,6 +41,29 @@ TEST(SimulatedSet, ShowsTheLastImagesOfAFolderByName) {
     EXPECT_EQ(heights().size(), 5U);
 }
 
+TEST(SimulatedSet, WindowsFollowEachOtherAndHoldTheirEventsWithoutNoiseWhereAsked) {
+    SimulatedSettings what = small_simulation();
+    const auto events_of = [&](std::optional<NoiseFilterSettings> noise_filter) {
+        std::size_t events = 0;
+        SensorTime end = SensorTime::min();
+        for_each_simulated_window(
+            what, test_textures(what), 0, noise_filter,
+            [&](const EventWindow& cut, const SimulatedStream&) {
+                EXPECT_EQ(cut.window.width(), what.frame_width);
+                EXPECT_TRUE(end == SensorTime::min() || cut.window.begin == end);
+                end = cut.window.end;
+                for (const Event& event : cut.events)
+                    EXPECT_TRUE(event.t > cut.window.begin && event.t <= cut.window.end);
+                events += cut.events.size();
+                return true;
+            });
+        return events;
+    };
+    const std::size_t all = events_of({});
+    EXPECT_GT(all, 1000U);
+    EXPECT_LT(events_of(parse_noise_filter("1ms", true)), all);
+}
+
 TEST(EvaluateSimulated, GivesTheSameNumbersEveryTimeAndInAnyOrder) {
     EvaluateSettings how = small_model();
     const EvaluateReport one = evaluate_simulated(small_simulation(), how);

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <string>
 #include <tuple>
 
@@ -113,6 +115,9 @@ TEST_F(CalibrationFile, SaysWhereItIsWrong) {
     EXPECT_THAT(error_of(with(kRos, "500.5", ".nan")), HasSubstr("expected a number"));
     EXPECT_THAT(error_of(with(kKalibr, "pinhole", "omni")), HasSubstr("found 'omni'"));
     EXPECT_THAT(error_of(kKalibr, "cam2"), HasSubstr("expected a cam2, found none"));
+    EXPECT_THAT(error_of(with(kKalibr, "[346", "[346.5")),
+                HasSubstr("resolution: expected 1 to 16384, found 346.5"));
+    EXPECT_THAT(error_of(with(kKalibr, "[346", "[1e300")), HasSubstr("found 1e+300"));
     EXPECT_THAT(error_of("a: &a [*a, *a]\nimage_width: 3\n"), HasSubstr("expected"));
 }
 
@@ -163,6 +168,47 @@ TEST_F(CalibrationFile, IsFittedToSizePartAndSide) {
     const Calibration none = fitted({}, {}, 64, 48);
     EXPECT_EQ(none.width, 64);
     EXPECT_EQ(none.k[0], 0) << "not calibrated";
+}
+
+/// Where a point of the scene falls in the rectified image: P R X.
+Pixel rectified(const Calibration& c, const std::array<double, 3>& point) {
+    std::array<double, 3> turned{}, shown{c.p[3], c.p[7], c.p[11]};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) turned[i] += c.r[3 * i + j] * point[j];
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) shown[i] += c.p[4 * i + j] * turned[j];
+    return {shown[0] / shown[2], shown[1] / shown[2]};
+}
+
+TEST_F(CalibrationFile, OfAMirroredFrameIsRectifiedToTheMirroredImage) {
+    Calibration sensor = read(kRos);
+    const double a = .2, b = .1;  // about two axes
+    sensor.r = {std::cos(a),
+                std::sin(a) * std::sin(b),
+                std::sin(a) * std::cos(b),
+                0,
+                std::cos(b),
+                -std::sin(b),
+                -std::sin(a),
+                std::cos(a) * std::sin(b),
+                std::cos(a) * std::cos(b)};
+    sensor.p = {490, 3, 319, -49, 0, 495, 239, 21, 0, 0, 1, 0};
+    for (const Flip flip : {Flip::none, Flip::horizontal, Flip::vertical, Flip::both}) {
+        const Calibration image = fitted(sensor, {640, 480, 0, 0, flip}, 640, 480);
+        const bool mirrored_x = flip == Flip::horizontal || flip == Flip::both;
+        const bool mirrored_y = flip == Flip::vertical || flip == Flip::both;
+        for (const auto& [x, y] : {Pixel{0, 0}, Pixel{.3, -.2}, Pixel{-.4, .1}}) {
+            const Pixel before = rectified(sensor, {x, y, 1});
+            const Pixel found = rectified(image, {mirrored_x ? -x : x, mirrored_y ? -y : y, 1});
+            EXPECT_NEAR(found.x, mirrored_x ? 639 - before.x : before.x, 1e-9) << name_of(flip);
+            EXPECT_NEAR(found.y, mirrored_y ? 479 - before.y : before.y, 1e-9) << name_of(flip);
+        }
+    }
+}
+
+TEST_F(CalibrationFile, OfAFisheyeLensLooksTheSameInAMirror) {
+    const Calibration sensor = read(kKalibr);
+    EXPECT_EQ(fitted(sensor, {346, 260, 0, 0, Flip::both}, 346, 260).d, sensor.d);
 }
 
 }  // namespace

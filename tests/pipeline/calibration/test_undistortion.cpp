@@ -139,6 +139,19 @@ TEST(Undistortion, KeepsTimeNumberAndSize) {
               0.02);
 }
 
+TEST(Undistortion, EachColourIsItsOwn) {
+    Frame frame = taken(barrel());
+    for (std::size_t c = 0; c < frame.colour.size(); ++c) {
+        frame.colour[c] = frame.intensity;
+        for (float& v : frame.colour[c].values()) v *= .25F * float(c + 1);
+    }
+    Undistortion undistortion{plan_undistortion(barrel(), 120, 90, {})};
+    const Frame& shown = undistortion.apply(frame);
+    for (std::size_t c = 0; c < frame.colour.size(); ++c)
+        EXPECT_NEAR(shown.colour[c](40, 50), .25F * float(c + 1) * shown.intensity(40, 50), 1e-5);
+    EXPECT_TRUE(undistortion.apply(taken(barrel())).colour[1].empty());
+}
+
 TEST(Undistortion, ARegionIsTheSamePartOfTheWholeOutOfAPartOfTheFrame) {
     const Frame frame = taken(barrel());
     Undistortion whole{plan_undistortion(barrel(), 120, 90, {})};
@@ -222,8 +235,9 @@ TEST(ResamplingMap, TakesPlanesAtOtherPlaces) {
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x) from(y, x) = float(2 * x - 3 * y);
     const std::vector<std::pair<float, float>> wanted{
-        {5, 7}, {5.5F, 7.25F}, {38.75F, 28}, {0, 0}, {39, 29}, {-.5F, 3}, {-.6F, 3}, {39.6F, 3}};
-    SourcePlaces places{Array2<float>{1, 8}, Array2<float>{1, 8}};
+        {5, 7},    {5.5F, 7.25F}, {38.75F, 28}, {0, 0},     {39, 29},  {-.5F, 3},
+        {-.6F, 3}, {39.6F, 3},    {39.4F, 3},   {37.5F, 9}, {38.5F, 9}};
+    SourcePlaces places{Array2<float>{1, 11}, Array2<float>{1, 11}};
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         places.x(0, int(i)) = wanted[i].first;
         places.y(0, int(i)) = wanted[i].second;
@@ -241,6 +255,9 @@ TEST(ResamplingMap, TakesPlanesAtOtherPlaces) {
         EXPECT_NEAR(to(0, 4), 2 * 39 - 3 * 29, 1e-4);
         EXPECT_EQ(to(0, 6), -99) << "more than half a pixel outside";
         EXPECT_EQ(to(0, 7), -99);
+        EXPECT_NEAR(to(0, 8), 2 * 39 - 3 * 3, .3) << "the last pixel goes on";
+        EXPECT_NEAR(to(0, 9), 2 * 37.5 - 3 * 9, .2) << "and nothing comes from the next row";
+        EXPECT_NEAR(to(0, 10), 2 * 38.5 - 3 * 9, .2);
     }
     map.apply(from, to, Resampling::linear, -99);
     EXPECT_NEAR(to(0, 5), 2 * 0 - 3 * 3, 1e-4) << "the outer pixel goes on";
