@@ -1,6 +1,7 @@
 // Chunks out of a file, and the way to a time in it.
 #include "replay/stream/file_recording.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace eventide {
@@ -14,12 +15,21 @@ FileRecording::FileRecording(ByteFile file, OpenedStream stream, std::vector<std
     if (file_.is_seekable()) file_.move_to(header.data_offset);
 }
 
+/// Of a small file no more than it has: a chunk's bytes are cleared before they are read. Something
+/// more is asked for at its end, as it may still grow.
+std::size_t FileRecording::next_chunk_bytes() const {
+    constexpr std::uint64_t kLeast = 4096;
+    if (!file_.is_seekable()) return kChunkBytes;
+    const std::uint64_t left = file_.size() - std::min(file_.position(), file_.size());
+    return std::size_t(std::clamp<std::uint64_t>(left, kLeast, kChunkBytes));
+}
+
 ReadStatus FileRecording::read(RawPacket& into) {
     into.gap_before = false;
     if (!ahead_.empty() && !file_.stopped()) {
         into.bytes = std::exchange(ahead_, {});
     } else {
-        into.bytes.resize(kChunkBytes);
+        into.bytes.resize(next_chunk_bytes());
         into.bytes.resize(file_.read_some(into.bytes));
     }
     into.arrived = std::chrono::steady_clock::now();

@@ -43,6 +43,8 @@ public:
     std::uint64_t position_bytes() const override { return file_.position(); }
 
 private:
+    std::size_t next_chunk_bytes() const;
+
     ByteFile file_;
     OpenedStream stream_;
     SensorInfo info_;

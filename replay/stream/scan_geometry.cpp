@@ -100,7 +100,8 @@ void scan_geometry(const ByteFile& file, OpenedStream& stream) {
         batch.clear();
     };
     std::uint64_t position = stream.header.data_offset;
-    std::vector<std::byte> bytes(FileRecording::kChunkBytes);
+    std::vector<std::byte> bytes(
+        std::size_t(std::clamp<std::uint64_t>(file.size(), 1, FileRecording::kChunkBytes)));
     for (std::size_t n = bytes.size(); n == bytes.size(); position += n) {
         n = file.read_at(position, bytes);
         parser->parse({bytes.data(), n}, batch);

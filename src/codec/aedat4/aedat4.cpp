@@ -48,12 +48,16 @@ Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height, st
 void Aedat4Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     while (!pending_.empty() && !bytes.empty()) {
         const std::size_t wanted = need_ > pending_.size() ? need_ - pending_.size() : 0;
-        const std::size_t n = std::min(wanted, bytes.size());
+        const std::size_t n = std::min(wanted + kLookBytes, bytes.size());
         pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
-        bytes = bytes.subspan(n);
-        if (pending_.size() < need_) return;
         std::span<const std::byte> rest(pending_);
-        run(rest, into);
+        if (pending_.size() >= need_) run(rest, into);
+        if (rest.size() <= n) {  // all of it lies in `bytes`, too, where a search goes on quickly
+            bytes = bytes.subspan(n - rest.size());
+            pending_.clear();
+            break;
+        }
+        bytes = bytes.subspan(n);
         pending_.erase(pending_.begin(), pending_.end() - std::ptrdiff_t(rest.size()));
     }
     if (bytes.empty()) return;
