@@ -17,9 +17,9 @@ struct ContactSheetSettings {
     bool overwrite = false;
     float sigma_white = kSigmaWhite;
     int rows = 4;  ///< frames on the sheet, >= 1
-    /// Draws the sensor's reference image for a frame of this time and event window, CV_8UC1, or
-    /// leaves the image empty where there is none; asked once frames have come to kTruthDelay after
-    /// it, as images come later than they were taken. May be empty.
+    /// Draws the sensor's reference image for a frame of this time and event window, CV_8UC1
+    /// or CV_8UC3, or leaves the image empty where there is none; asked once frames have come to
+    /// kTruthDelay after it, as images come later than they were taken. May be empty.
     std::function<void(SensorTime, const Window&, cv::Mat&)> draw_truth = {};
     std::string truth_caption = "truth";  ///< what those images are: a sensor's own are not truth
     ShownPart part = {};                  ///< that frames show

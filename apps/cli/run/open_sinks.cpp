@@ -185,9 +185,10 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.truth_caption = plan.reference_caption;
     sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
     if (plan.references != nullptr)
-        sheet.draw_truth = [references = plan.references, sensor = plan.sensor](
-                               SensorTime t, const Window& window, cv::Mat& image) {
-            references->draw_nearest(t, window, {sensor.width, sensor.height}, image);
+        sheet.draw_truth = [references = plan.references, sensor = plan.sensor,
+                            in_colour = settings.colour](SensorTime t, const Window& window,
+                                                         cv::Mat& image) {
+            references->draw_nearest(t, window, {sensor.width, sensor.height}, in_colour, image);
         };
     return std::make_unique<ContactSheetSink>(std::move(sheet));
 }

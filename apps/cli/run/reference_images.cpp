@@ -10,16 +10,17 @@ namespace eventide::app {
 
 namespace {
 
-/// 8-bit grey; colour sensors' images are weighed as cvtColor does.
-cv::Mat grey_of(const ReferenceImage& image) {
+/// 8 bits: grey, weighed as cvtColor does, or in colour where the image is (BGR).
+cv::Mat shown_of(const ReferenceImage& image, bool in_colour) {
     const int width = image.pixels.width() / image.channels;
     const cv::Mat wide(image.pixels.height(), width, CV_MAKETYPE(CV_16U, image.channels),
                        const_cast<std::uint16_t*>(image.pixels.values().data()));
-    cv::Mat narrow, grey;
+    cv::Mat narrow, shown;
     wide.convertTo(narrow, CV_8U, 1.0 / 257);
-    if (image.channels == 1) return narrow;
-    cv::cvtColor(narrow, grey, image.channels == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
-    return grey;
+    if (image.channels == 1 || (in_colour && image.channels == 3)) return narrow;
+    const int to_grey = image.channels == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY;
+    cv::cvtColor(narrow, shown, in_colour ? int(cv::COLOR_BGRA2BGR) : to_grey);
+    return shown;
 }
 
 std::size_t bytes_of(const ReferenceImage& image) {
@@ -69,25 +70,26 @@ void ReferenceImages::draw(SensorTime t, const Window& window, cv::Size sensor,
     const std::lock_guard lock{mutex_};
     const auto image = nearest_to(t);
     if (image && 2 * std::chrono::abs(images_[*image].t - t) <= window.width())
-        draw(images_[*image], sensor, shown);
+        draw(images_[*image], sensor, false, shown);
 }
 
 void ReferenceImages::draw_nearest(SensorTime t, const Window& window, cv::Size sensor,
-                                   cv::Mat& shown) const {
+                                   bool in_colour, cv::Mat& shown) const {
     const std::lock_guard lock{mutex_};
     const auto image = nearest_to(t);
     if (image &&
         2 * std::chrono::abs(images_[*image].t - t) <= std::max(window.width(), spacing_at(*image)))
-        draw(images_[*image], sensor, shown);
+        draw(images_[*image], sensor, in_colour, shown);
 }
 
-void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const {
-    const cv::Mat grey = grey_of(image);
-    shown = cv::Mat::zeros(sensor, CV_8UC1);
+void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, bool in_colour,
+                           cv::Mat& shown) const {
+    const cv::Mat seen = shown_of(image, in_colour);
+    shown = cv::Mat::zeros(sensor, seen.type());
     const cv::Rect whole{{0, 0}, sensor};
-    const cv::Rect place = cv::Rect{image.x0, image.y0, grey.cols, grey.rows} & whole;
+    const cv::Rect place = cv::Rect{image.x0, image.y0, seen.cols, seen.rows} & whole;
     if (place.empty()) return;  // nothing of it lies on the sensor
-    grey(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
+    seen(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
 }
 
 }  // namespace eventide::app

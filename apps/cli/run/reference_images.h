@@ -29,12 +29,14 @@ public:
     /// none.
     void draw(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
     /// To be looked at beside the frame: also where it is as near as half the time between images.
-    void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
+    /// `in_colour`: CV_8UC3 where the image has colours.
+    void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, bool in_colour,
+                      cv::Mat& shown) const;
 
 private:
     /// Empty where there is none.
     std::optional<std::size_t> nearest_to(SensorTime t) const;
-    void draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const;
+    void draw(const ReferenceImage& image, cv::Size sensor, bool in_colour, cv::Mat& shown) const;
     /// Between it and the nearer of its neighbours; 0 where it has none.
     SensorDuration spacing_at(std::size_t image) const;
 

@@ -24,7 +24,7 @@ void show_images(ReferenceImages& references, int from_ms, int to_ms) {
 cv::Mat truth_at(const ReferenceImages& references, int ms) {
     cv::Mat shown;
     const SensorTime t = from_us(1000 * ms);
-    references.draw_nearest(t, {t - SensorDuration{1000}, t}, {3, 2}, shown);
+    references.draw_nearest(t, {t - SensorDuration{1000}, t}, {3, 2}, false, shown);
     return shown;
 }
 
@@ -67,6 +67,26 @@ TEST(ReferenceImages, OneBesideTheSensorShowsNothingOfIt) {
     const cv::Mat shown = truth_at(references, 0);
     EXPECT_EQ(shown.size(), cv::Size(3, 2));
     EXPECT_EQ(cv::countNonZero(shown), 0);
+}
+
+TEST(ReferenceImages, AreInColourBesideFramesInColour) {
+    for (const int channels : {3, 4}) {
+        ReferenceImages references;
+        Batch batch;
+        ReferenceImage& image = batch.images.emplace_back();
+        image.channels = channels;
+        image.pixels = Array2<std::uint16_t>(2, 3 * channels);
+        std::ranges::fill(image.pixels.row(0), std::uint16_t{0});
+        image.pixels(0, 0) = 65535;  // blue
+        references.see(batch);
+        cv::Mat shown;
+        references.draw_nearest(from_us(0), {}, {3, 2}, true, shown);
+        ASSERT_EQ(shown.type(), CV_8UC3);
+        EXPECT_EQ(shown.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 0, 0));
+        references.draw_nearest(from_us(0), {}, {3, 2}, false, shown);
+        ASSERT_EQ(shown.type(), CV_8UC1);
+        EXPECT_EQ(shown.at<std::uint8_t>(0, 0), 29) << "as bright as blue is";
+    }
 }
 
 }  // namespace
