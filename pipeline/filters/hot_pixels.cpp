@@ -17,6 +17,7 @@ HotPixelFilter::HotPixelFilter(int width, int height) : width_{width} {
 HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::path& list)
     : width_{width}, listed_(std::size_t(width) * std::size_t(height)) {
     constexpr std::size_t kLargestList = std::size_t{64} << 20;  // a few million pixels
+    constexpr std::size_t kMostShown = 80;                       // of a line that is none
     std::istringstream file{read_text_file(list, ErrorKind::usage, kLargestList)};
     int number = 0;
     for (std::string line; std::getline(file, line);) {
@@ -31,8 +32,8 @@ HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::pat
         if (!(words >> x >> y) || words >> rest || x < 0 || y < 0 || x >= width || y >= height)
             throw Error(ErrorKind::usage, list.string() + ":" + std::to_string(number) +
                                               ": expected \"x,y\" inside " + std::to_string(width) +
-                                              "x" + std::to_string(height) + ", found '" + line +
-                                              "'");
+                                              "x" + std::to_string(height) + ", found '" +
+                                              line.substr(0, kMostShown) + "'");
         listed_[std::size_t(y) * std::size_t(width) + std::size_t(x)] = 1;
     }
 }

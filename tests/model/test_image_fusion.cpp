@@ -58,6 +58,49 @@ TEST_F(ImageFusionTest, FromItsTimeOnAnImageCountsWhole) {
     EXPECT_NEAR(shown(112.5).intensity(9, 9), .6F, 1e-4);
 }
 
+TEST_F(ImageFusionTest, AnImageFromBeforeTheFirstEventCorrectsTheFirstFrame) {
+    advance(100);
+    ASSERT_TRUE(correct(constant(.8F), 0));
+    for (const double ms : {0., .001, 50., 100.})
+        EXPECT_NEAR(shown(ms).intensity(9, 9), .8F, 1e-4) << ms;
+    EXPECT_NEAR(shown(.001).sigma(9, 9), .02F, 1e-3);
+    ASSERT_TRUE(correct(constant(.8F), 80)) << "another one in the same window";
+    EXPECT_NEAR(shown(.001).intensity(9, 9), .8F, 1e-4) << "takes nothing back";
+}
+
+TEST_F(ImageFusionTest, OfImagesFromBeforeTheFirstEventTheLastCounts) {
+    advance(100);
+    ASSERT_TRUE(correct(constant(.6F), 0));
+    ASSERT_TRUE(correct(constant(.8F), 0));
+    EXPECT_NEAR(shown(.001).intensity(9, 9), .8F, 1e-4);
+}
+
+TEST_F(ImageFusionTest, TheFirstImageIsNotHeldUpByAnotherOneInItsWindow) {
+    advance(100);
+    ASSERT_TRUE(correct(constant(.8F), 10));
+    ASSERT_TRUE(correct(constant(.8F), 90));
+    EXPECT_NEAR(shown(5).intensity(9, 9), .6F, 1e-4) << "without a jump";
+    for (const double ms : {10., 50., 100.})
+        EXPECT_NEAR(shown(ms).intensity(9, 9), .8F, 1e-4) << ms;
+    advance(200);
+    ASSERT_TRUE(correct(constant(.4F), 110));
+    EXPECT_NEAR(shown(112.5).intensity(9, 9), .6F, 1e-4) << "others come in over some time";
+}
+
+/// Of a stream whose first image came when windows had passed.
+TEST_F(ImageFusionTest, AnImageFromBeforeAWindowIsNotTakenForOneOfItsBegin) {
+    now_ms_ = 100;
+    advance(150, 1);
+    ASSERT_TRUE(correct(constant(.8F), 90));
+    EXPECT_GT(shown(100.001).sigma(9, 9), .05F) << "events between may have moved it";
+    fusion_.reset();
+    now_ms_ = 50;
+    advance(100, 1);
+    advance(150, 1);
+    ASSERT_TRUE(fusion_.correct(image_of(constant(.8F), at_ms(50)), grey(.4F, at_ms(100))));
+    EXPECT_GT(shown(100.001).sigma(9, 9), .05F) << "nor where no more than the begin is known";
+}
+
 TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSameFrame) {
     advance(50);
     ASSERT_TRUE(correct(ramp(), 50));
@@ -237,6 +280,18 @@ TEST_F(MovingScene, AnImageTakenWithinAWindowIsFollowedToItsEnd) {
     advance(80);
     ASSERT_TRUE(fusion_.correct(image_of(scene(40), at_ms(40)), faint(40)));
     EXPECT_LT(error_at(80), .25 * error_alone(80));
+}
+
+TEST_F(MovingScene, TheFirstImageIsFollowedThroughItsWindow) {
+    advance(80);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(0), at_ms(0)), faint(0)));
+    fusion_.reset();  // what was another stream's is forgotten
+    now_ms_ = 0;
+    advance(60);  // 6 px
+    ASSERT_TRUE(fusion_.correct(image_of(scene(0), at_ms(0)), faint(0)));
+    for (const int ms : {1, 15, 30, 45, 60}) EXPECT_LT(error_at(ms), .3 * error_alone(ms)) << ms;
+    advance(80);
+    for (const int ms : {1, 15, 30, 45}) EXPECT_LT(error_at(ms), .35 * error_alone(ms)) << ms;
 }
 
 TEST_F(MovingScene, WhatAnotherSceneLookedLikeIsForgotten) {

@@ -66,16 +66,21 @@ void ImageFusion::advance(const Window& window, const Array2<float>& events,
     Expected& now = newest();
     now.window = window;
     knows_shown_ = at_end != nullptr;
-    now.followed = image_.there() && knows_shown_;
     now.new_image = false;
     now.whole_from = 1;
     past_.remember(window, events);
     if (at_end != nullptr) copy(at_end->intensity, shown_);
-    const float weight = now.followed ? kFollowed : 1;
-    for (std::size_t i = 0; i < since_.values().size(); ++i)
-        since_.values()[i] = weight * events.values()[i];
+    copy(events, since_);
+    pass_window();
+}
+
+/// Through the newest window, from its begin to its end. since_: its events.
+void ImageFusion::pass_window() noexcept {
+    Expected& now = newest();
+    now.followed = image_.there() && knows_shown_;
+    image_.pass(since_);
+    for (float& events : since_.values()) events *= now.followed ? kFollowed : 1;
     pyramid_.forget(since_);
-    image_.pass(events);
     if (now.followed) image_.follow(shown_, now.since_before);
     expect_at_end();
 }
@@ -84,19 +89,44 @@ void ImageFusion::advance(const Window& window, const Array2<float>& events,
 /// not, of what was lacking when it was last.
 void ImageFusion::expect_at_end() noexcept {
     Expected& now = newest();
-    if (now.followed || now.new_image) {
-        image_.tell_trust(trust_);
-        pyramid_.know(trust_);
-        image_.residual(shown_, now.since_before, 0, residual_);
-    }
-    pyramid_.correct(residual_, now.correction);
-    pyramid_.variance(now.variance);
+    if (now.followed || now.new_image) know(shown_, now.since_before);
+    expect(now);
+}
+
+/// What is lacking where the image was followed to, and what the model shows there.
+void ImageFusion::know(const Array2<float>& shown, const MotionField& since_before) noexcept {
+    image_.tell_trust(trust_);
+    pyramid_.know(trust_);
+    image_.residual(shown, since_before, 0, residual_);
+}
+
+void ImageFusion::expect(Expected& expected) noexcept {
+    pyramid_.correct(residual_, expected.correction);
+    pyramid_.variance(expected.variance);
+}
+
+/// An image from before the first window is known at that window's begin, where the model shows
+/// `shown`, and followed through it.
+void ImageFusion::begin_with(const ReferenceImage& image, const Array2<float>& shown) noexcept {
+    Expected& begin = expected_[std::size_t((windows_ - 1) % 4)];
+    fill(since_, 0);
+    image_.take(image, shown, begin.correction, since_, trust_);
+    pyramid_.observe(trust_, since_);
+    image_.follow(shown);
+    know(shown, begin.since_before);
+    expect(begin);
+    past_.add_since(newest().window.begin, 1, since_);
+    pass_window();
 }
 
 bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) noexcept {
     Expected& now = newest();
     if (windows_ == 0 || image.t > now.window.end || image.t < now.window.end - kRemembered)
         return false;
+    if (windows_ == 1 && image.t <= now.window.begin && rendered.t >= now.window.begin) {
+        begin_with(image, rendered.intensity);
+        return true;
+    }
     fill(since_, 0);
     past_.add_since(image.t, 1, since_);
     image_.take(image, rendered.intensity, now.correction, since_, trust_);
@@ -108,12 +138,20 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     pyramid_.observe(trust_, since_);
     if (!knows_shown_) copy(rendered.intensity, shown_);
     image_.follow(shown_);
-    now.new_image = true;
-    const double width = double(now.window.width().count());
-    const double since = double((image.t - now.window.begin).count());
-    now.whole_from = width > 0 ? std::max(kFastest, float(since / width)) : 1;
+    come_in(image.t, now);
     expect_at_end();
     return true;
+}
+
+/// An image of the window, taken at t. In the first window there was none to go over from.
+void ImageFusion::come_in(SensorTime t, Expected& now) const noexcept {
+    const double width = double(now.window.width().count());
+    const float at = width > 0 ? float(double((t - now.window.begin).count()) / width) : 1;
+    if (windows_ > 1)
+        now.whole_from = std::max(kFastest, at);
+    else if (!now.new_image)
+        now.whole_from = at;
+    now.new_image = true;
 }
 
 const ImageFusion::Expected& ImageFusion::at_end_of(std::uint64_t window) const {
@@ -202,7 +240,7 @@ void ImageFusion::apply(const RenderRequest& request, const Array2<float>& shown
     const double width = double(after.window.width().count());
     const double since = double((frame.t - after.window.begin).count());
     const float at = width > 0 ? float(std::clamp(since / width, 0., 1.)) : 1.F;
-    const float weight = std::min(1.F, at / after.whole_from);
+    const float weight = at < after.whole_from ? at / after.whole_from : 1;
     correct_within(k, at, weight, shown);
     const int out_height = request.height > 0 ? request.height : height_;
     for (int y = 0; y < frame.intensity.height(); ++y) {

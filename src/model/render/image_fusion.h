@@ -30,7 +30,8 @@ struct LinearTap {
 /// model shows is what is added, as far as the bands of a ResidualPyramid still hold.
 ///
 /// Where an image comes within a window the correction goes over linearly from the one that was,
-/// from the window's begin to the image's time, so that an image does not make frames jump.
+/// from the window's begin to the image's time, so that an image does not make frames jump. One
+/// from before the first window corrects it from its begin on.
 ///
 ///     event windows    n - 3  |  n - 2  |  n - 1  |  n  |
 ///     expected_        at each of these four ends, that of window n in slot n % 4
@@ -72,6 +73,11 @@ private:
         float whole_from = 1;      // where in the window it counts whole, 1 at the end
     };
     const Expected& at_end_of(std::uint64_t window) const;
+    void pass_window() noexcept;
+    void begin_with(const ReferenceImage& image, const Array2<float>& shown) noexcept;
+    void come_in(SensorTime t, Expected& now) const noexcept;
+    void know(const Array2<float>& shown, const MotionField& since_before) noexcept;
+    void expect(Expected& expected) noexcept;
     void expect_at_end() noexcept;
     void correct_within(std::uint64_t window, float at, float weight,
                         const Array2<float>& shown) noexcept;

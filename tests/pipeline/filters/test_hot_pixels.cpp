@@ -91,6 +91,17 @@ TEST(HotPixelFilter, QuotesALineThatIsNoPixelAsItStands) {
     }
 }
 
+TEST(HotPixelFilter, OfAFileThatIsNoTextTheBeginIsQuoted) {
+    const test::TempFolder temp;
+    test::write_text(temp / "hot.npy", std::string(1'000'000, '\x91'));
+    try {
+        HotPixelFilter filter{32, 24, temp / "hot.npy"};
+        FAIL() << "taken for a list";
+    } catch (const Error& error) {
+        EXPECT_LT(std::string{error.what()}.size(), 500U);
+    }
+}
+
 TEST(HotPixelFilter, ReadsAList) {
     const test::TempFolder temp;
     test::write_text(temp / "hot.txt", "# found in the dark\n7,9\n\n3 4  # two\n");
