@@ -31,7 +31,9 @@ void ModelRun::push(const EventWindow& event_window) {
 
 void ModelRun::finish() {
     renderer_.finish();
-    render_what_is_ready();  // what is not even now lies outside the windows
+    render_what_is_ready();
+    not_rendered_ += int(queries_.size());  // what is not ready even now
+    queries_.clear();
 }
 
 void ModelRun::render_what_is_ready() {
