@@ -74,8 +74,7 @@ std::size_t WinogradConv::scratch_size(int height, int width) const {
            ((rows + kSide - 1) * std::size_t(inputs_) + rows * std::size_t(outputs_));
 }
 
-void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
-                       float* scratch) const noexcept {
+void WinogradConv::run(const ConvArea& area, float* scratch) const noexcept {
     // About the same size, whole quads of rows but for the last: of 50 rows 8, 12, 8, 12 and 10.
     const int quads = (area.height + kQuad - 1) / kQuad,
               bands = (area.height + kMaxRows - 1) / kMaxRows;
@@ -88,12 +87,11 @@ void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
             if (source.in != nullptr)
                 source.in = static_cast<const float*>(source.in) + y * source.pitch;
         band.out = static_cast<float*>(area.out) + y * area.out_pitch;
-        run_band(band, out_step, scratch);
+        run_band(band, scratch);
     }
 }
 
-void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
-                            float* scratch) const noexcept {
+void WinogradConv::run_band(const ConvArea& band, float* scratch) const noexcept {
     const VectorKernels& kernels = positions_.front().numbers().kernels();
     const int rows = band.height, read = rows + kSide - 1, groups = groups_of(band.width);
     const std::ptrdiff_t group = std::ptrdiff_t(read) * inputs_, plane = groups * group,
@@ -130,7 +128,7 @@ void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
                              .outputs = outputs_,
                              .out = static_cast<float*>(band.out),
                              .out_pitch = band.out_pitch,
-                             .out_step = out_step});
+                             .out_step = outputs_});
 }
 
 }  // namespace eventide

@@ -19,12 +19,11 @@ public:
 
     /// Scratch numbers run() needs for height x width outputs or fewer.
     std::size_t scratch_size(int height, int width) const;
-    /// Outputs of a row `out_step` numbers apart. On any number of threads, each with its own
-    /// scratch memory.
-    void run(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    /// On any number of threads, each with its own scratch memory.
+    void run(const ConvArea& area, float* scratch) const noexcept;
 
 private:
-    void run_band(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    void run_band(const ConvArea& area, float* scratch) const noexcept;
 
     int inputs_, outputs_;
     std::vector<int> sources_;

@@ -47,7 +47,7 @@ struct Layer {
                   .out_pitch = std::ptrdiff_t(width) * kOutputs,
                   .height = height,
                   .width = width},
-                 kOutputs, scratch.data());
+                 scratch.data());
         EXPECT_TRUE(out.intact() && scratch.intact()) << "written outside";
         return {out.data(), out.data() + height * width * kOutputs};
     }
