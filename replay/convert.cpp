@@ -18,9 +18,9 @@ constexpr SensorDuration kLatestData = std::chrono::milliseconds(500);
 /// The part between two times of the clock that the stream begins with. Where that begins anew, all
 /// that follows lies behind `from`, once that was reached, and nothing before a `to` that was; as
 /// in the slicer of a run.
-class AskedPart {
+class StreamPart {
 public:
-    AskedPart(std::optional<SensorTime> from, std::optional<SensorTime> to)
+    StreamPart(std::optional<SensorTime> from, std::optional<SensorTime> to)
         : from_{from}, to_{to} {}
 
     /// To the batches one after the other.
@@ -119,7 +119,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     const auto parser = recording.make_parser();
     Batch batch;
     report.data = WrittenData{target.holds(), options.colours};
-    AskedPart part{options.from, options.to};
+    StreamPart part{options.from, options.to};
     const auto pass_on = [&] {
         report.events_read += batch.events.size();
         part.keep(batch);

@@ -76,7 +76,6 @@ private:
     std::unique_ptr<DataLoader> feed_;
     std::future<std::vector<TrainingBatch>> upcoming_;  // of the next step; read from feed_
     Checkpoint progress_;
-    int skipped_ = 0;
 };
 
 }  // namespace eventide

@@ -126,18 +126,17 @@ void Trainer::step() {
     if (const auto of_inputs = gradients.find("encoder.in.weight"); of_inputs != gradients.end())
         of_inputs->second = of_inputs->second * input_mask_;  // what starts at 0 stays there
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
-    if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next segments
-        ++skipped_;
+    if (!std::isfinite(norm))  // a state that has run away must not spoil the next segments
         for (RecurrentState& recurrent : std::span{progress_.recurrent_states}.subspan(
                  std::size_t(first_place), batches.size()))
             recurrent =
                 begin_segment(recurrent, std::vector<bool>(std::size_t(options_.streams), true));
-    }
     ++progress_.segment;
     const double seconds = seconds_since(start);
     progress_.elapsed_minutes +=
         (options_.clock == "cpu" ? cpu_seconds() - cpu_start : seconds) / 60;
-    log_.step(mark(), mean.terms, {rate, norm, seconds, skipped_});
+    const std::int64_t skipped = progress_.segment - optimiser_.steps;
+    log_.step(mark(), mean.terms, {rate, norm, seconds, skipped});
 }
 
 }  // namespace eventide

@@ -29,7 +29,7 @@ public:
 
     struct Step {
         double rate = 0, gradient = 0, seconds = 0;  ///< learning rate; norm; wall time
-        int skipped = 0;                             ///< steps so far whose gradient was not finite
+        std::int64_t skipped = 0;  ///< steps of the run so far whose gradient was not finite
     };
     /// Throws Error(failed) where a file cannot be written; validation() too.
     void step(const Mark& mark, const LossTerms& terms, const Step& step);

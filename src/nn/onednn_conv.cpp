@@ -240,7 +240,7 @@ void OnednnConv::run(const ConvCall& call, float* scratch) const noexcept {
     void* in = const_cast<void*>(call.gathered);
     if (in == nullptr) in = const_cast<void*>(p.gather(call, pieces.take(sized.in.get_size())));
     const std::ptrdiff_t row = std::ptrdiff_t(call.width) * p.outputs;
-    const bool dense = call.out_step == p.outputs && call.out_pitch == row;
+    const bool dense = call.out_pitch == row;
     auto* out = static_cast<float*>(pieces.take(sized.out.get_size()));
     if (dense) out = call.out;
 
@@ -259,11 +259,8 @@ void OnednnConv::run(const ConvCall& call, float* scratch) const noexcept {
                                 "oneDNN could not run a convolution");
     }
     if (dense) return;
-    for (int y = 0; y < call.height; ++y) {
-        float* pixel = call.out + y * call.out_pitch;
-        for (int x = 0; x < call.width; ++x, pixel += call.out_step, out += p.outputs)
-            std::memcpy(pixel, out, std::size_t(p.outputs) * sizeof(float));
-    }
+    for (int y = 0; y < call.height; ++y, out += row)
+        std::memcpy(call.out + y * call.out_pitch, out, std::size_t(row) * sizeof(float));
 }
 
 }  // namespace eventide

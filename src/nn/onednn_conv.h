@@ -17,8 +17,8 @@ struct ConvCall {
     const float* in = nullptr;
     std::ptrdiff_t in_pitch = 0;  ///< numbers from one row to the next
     float* out = nullptr;
-    std::ptrdiff_t out_pitch = 0, out_step = 0;  ///< numbers between rows, pixels
-    int height = 0, width = 0;                   ///< outputs
+    std::ptrdiff_t out_pitch = 0;  ///< likewise; pixels lie dense
+    int height = 0, width = 0;     ///< outputs
     /// The whole input, where it lies dense in the numbers that are multiplied; `in` is not read
     /// then.
     const void* gathered = nullptr;

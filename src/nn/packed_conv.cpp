@@ -130,7 +130,7 @@ void PackedConv::run(const ConvArea& area, float* scratch) const noexcept {
     if (onednn_ != nullptr)
         run_onednn(area, scratch);
     else
-        run_own(area, area.to_bf16 ? numbers().units(outputs_) : outputs_, scratch);
+        run_own(area, scratch);
 }
 
 void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
@@ -153,32 +153,29 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
         area.in[0] = {scratch, pitch};
         scratch += rows * pitch;
     }
-    run_own(area, call.out_step, scratch);
+    run_own(area, scratch);
 }
 
 /// Pairs of outputs where there are weights for them. A row of 5:
 ///
 ///     outputs    0 1 | 2 3 |
 ///                          3 4
-void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step,
-                         float* scratch) const noexcept {
+void PackedConv::run_own(const ConvArea& area, float* scratch) const noexcept {
     if (winograd_ != nullptr) {
-        winograd_->run(area, out_step, scratch);
+        winograd_->run(area, scratch);
         return;
     }
-    const bool is_dense = out_step == (area.to_bf16 ? numbers().units(outputs_) : outputs_);
-    if (pair_.empty() || !is_dense || area.width < 2) {
-        run_part(area, out_step, 0, area.width, 1);
+    if (pair_.empty() || area.width < 2) {
+        run_part(area, 0, area.width, 1);
         return;
     }
-    run_part(area, out_step, 0, area.width / 2, 2);
+    run_part(area, 0, area.width / 2, 2);
     // Of an odd number the last two, again: one of them is written twice, with the same bits.
-    if (area.width % 2 != 0) run_part(area, out_step, area.width - 2, 1, 2);
+    if (area.width % 2 != 0) run_part(area, area.width - 2, 1, 2);
 }
 
 /// `count` times one or two outputs of each row, from `first` on.
-void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
-                          int at_once) const noexcept {
+void PackedConv::run_part(const ConvArea& area, int first, int count, int at_once) const noexcept {
     std::array<Stretch, std::size_t{9} * ConvArea::kMaxSources> stretches;
     int n = 0;
     over_stretches([&](int source, int row, int x) {
@@ -190,6 +187,7 @@ void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int fir
             at_once * step, stride_ * pitch,
             as_one_ ? units : (side_ + (at_once - 1) * stride_) * units};
     });
+    const std::ptrdiff_t out_step = area.to_bf16 ? numbers().units(outputs_) : outputs_;
     DotArea dots;
     dots.stretches = stretches.data();
     dots.count = n;
@@ -211,7 +209,6 @@ void PackedConv::run_onednn(const ConvArea& area, float* scratch) const noexcept
     ConvCall call;
     call.gathered = scratch;
     call.out = area.to_bf16 ? wide : static_cast<float*>(area.out);
-    call.out_step = outputs_;
     call.out_pitch = area.to_bf16 ? std::ptrdiff_t(area.width) * outputs_ : area.out_pitch;
     call.height = area.height;
     call.width = area.width;

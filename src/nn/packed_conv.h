@@ -43,9 +43,8 @@ public:
 private:
     PackedWeights packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
                          const Backend& backend) const;
-    void run_own(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
-    void run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
-                  int at_once) const noexcept;
+    void run_own(const ConvArea& area, float* scratch) const noexcept;
+    void run_part(const ConvArea& area, int first, int count, int at_once) const noexcept;
     void run_onednn(const ConvArea& area, float* scratch) const noexcept;
     bool by_quads() const;
     template <typename Body>

@@ -77,8 +77,7 @@ std::size_t WinogradConv::scratch_size(int height, int width) const {
            ((rows + kSide - 1) * std::size_t(units()) + rows * std::size_t(outputs_));
 }
 
-void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
-                       float* scratch) const noexcept {
+void WinogradConv::run(const ConvArea& area, float* scratch) const noexcept {
     // About the same size, whole quads of rows but for the last: of 50 rows 8, 12, 8, 12 and 10.
     const int quads = (area.height + kQuad - 1) / kQuad,
               bands = (area.height + kMaxRows - 1) / kMaxRows;
@@ -91,12 +90,11 @@ void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
             if (source.in != nullptr)
                 source.in = static_cast<const float*>(source.in) + y * source.pitch;
         band.out = static_cast<float*>(area.out) + y * area.out_pitch;
-        run_band(band, out_step, scratch);
+        run_band(band, scratch);
     }
 }
 
-void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
-                            float* scratch) const noexcept {
+void WinogradConv::run_band(const ConvArea& band, float* scratch) const noexcept {
     const int rows = band.height, read = rows + kSide - 1, groups = groups_of(band.width);
     const std::ptrdiff_t group = std::ptrdiff_t(read) * units(), plane = groups * group,
                          products_plane = std::ptrdiff_t(groups) * rows * outputs_;
@@ -114,6 +112,7 @@ void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
         dots.out_pitch = std::ptrdiff_t(rows) * outputs_;
         positions_[std::size_t(position)].run(dots);
     }
+    const bool to_bf16 = numbers().bf16() != nullptr && band.to_bf16;
     const WinogradOutput output{.in = products,
                                 .plane = products_plane,
                                 .bias = bias_.data(),
@@ -123,8 +122,8 @@ void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
                                 .outputs = outputs_,
                                 .out = band.out,
                                 .out_pitch = band.out_pitch,
-                                .out_step = out_step};
-    if (numbers().bf16() != nullptr && band.to_bf16)
+                                .out_step = to_bf16 ? numbers().units(outputs_) : outputs_};
+    if (to_bf16)
         numbers().bf16()->winograd_output(output);
     else
         numbers().kernels().winograd_output(output);

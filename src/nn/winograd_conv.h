@@ -20,14 +20,13 @@ public:
 
     /// Scratch numbers run() needs for height x width outputs or fewer.
     std::size_t scratch_size(int height, int width) const;
-    /// Outputs of a row `out_step` numbers apart. On any number of threads, each with its own
-    /// scratch memory.
-    void run(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    /// On any number of threads, each with its own scratch memory.
+    void run(const ConvArea& area, float* scratch) const noexcept;
 
 private:
     const Numbers& numbers() const { return positions_.front().numbers(); }
     int units() const { return numbers().units(inputs_); }
-    void run_band(const ConvArea& band, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    void run_band(const ConvArea& band, float* scratch) const noexcept;
     void sum_pixels(const ConvArea& band, std::ptrdiff_t plane, float* channels) const noexcept;
 
     int inputs_, outputs_;

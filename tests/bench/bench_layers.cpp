@@ -53,7 +53,6 @@ void convolve(benchmark::State& state, const Shape& s, const Backend& backend) {
                         std::ptrdiff_t(reach + kApart) * s.in,
                         out.values().data(),
                         std::ptrdiff_t(s.side + kApart) * s.out,
-                        s.out,
                         s.side,
                         s.side};
     for (auto _ : state) conv.run(call, scratch.data());

@@ -38,7 +38,7 @@ struct Work {
     std::vector<float> scratch;
 
     ConvCall call() {
-        return {in.data(), (kWidth + 2) * kIn, out.data(), kWidth * kOut, kOut, kHeight, kWidth};
+        return {in.data(), (kWidth + 2) * kIn, out.data(), kWidth * kOut, kHeight, kWidth};
     }
     void run(const OnednnConv& conv) {
         scratch.resize(conv.scratch_size());

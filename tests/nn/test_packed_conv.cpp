@@ -81,7 +81,7 @@ void check(const Shape& s, Fill fill, const Backend& backend) {
     test::Guarded out{exact.values().size()},
         scratch{conv.scratch_size(exact.height(), exact.width())};
     conv.run({padded.data(), std::ptrdiff_t(columns) * s.in, out.data(),
-              std::ptrdiff_t(exact.width()) * s.out, s.out, exact.height(), exact.width()},
+              std::ptrdiff_t(exact.width()) * s.out, exact.height(), exact.width()},
              scratch.data());
 
     EXPECT_TRUE(out.intact()) << "written outside";
@@ -117,9 +117,9 @@ TEST(PackedConv, WhereATileLiesChangesNoBit) {
         std::vector<float> whole(std::size_t(32 * 40 * 24)),
             part(std::size_t(kHeight * kWidth * 24));
         std::vector<float> scratch(conv.scratch_size(32, 40));
-        conv.run({in.data(), 42 * kInputs, whole.data(), 40 * 24, 24, 32, 40}, scratch.data());
+        conv.run({in.data(), 42 * kInputs, whole.data(), 40 * 24, 32, 40}, scratch.data());
         conv.run({in.data() + (kRow * 42 + kColumn) * kInputs, 42 * kInputs, part.data(),
-                  kWidth * 24, 24, kHeight, kWidth},
+                  kWidth * 24, kHeight, kWidth},
                  scratch.data());
         for (int y = 0; y < kHeight; ++y)
             for (int i = 0; i < kWhole * 24; ++i)
@@ -158,8 +158,7 @@ TEST(PackedConv, OutputsInBf16AreThoseInFloatRounded) {
             const int units = conv.numbers().units(outputs);
             std::vector<float> scratch(conv.scratch_size(kHeight, kWidth)),
                 wide(std::size_t(kHeight * kWidth * outputs));
-            conv.run({in.data(), kRow * kInputs, wide.data(), kWidth * outputs, outputs, kHeight,
-                      kWidth},
+            conv.run({in.data(), kRow * kInputs, wide.data(), kWidth * outputs, kHeight, kWidth},
                      scratch.data());
             std::vector<float> map(in.size());
             conv.numbers().from_float(in.data(), std::size_t((kHeight + 2) * kRow), kInputs,

@@ -40,35 +40,30 @@ struct Layer {
     }
     /// What comes out, in float32; `to_bf16`: rounded to what layers read.
     std::vector<float> run(const Backend& backend, bool to_bf16 = false) const {
-        const WinogradConv conv{weights, {kFirst, kSecond}, true, backend};
-        return run(conv, backend, to_bf16, [&](const ConvArea& area, int out_step, float* scratch) {
-            conv.run(area, out_step, scratch);
-        });
+        return run(WinogradConv{weights, {kFirst, kSecond}, true, backend}, backend, to_bf16);
     }
     /// By the definition's products.
     std::vector<float> run_direct(const Backend& backend) const {
         const PackedConv conv{
             weights, 1, true, backend, {}, {kFirst, kSecond}, Summation::by_pixel};
-        return run(conv, backend, false,
-                   [&](const ConvArea& area, int, float* scratch) { conv.run(area, scratch); });
+        return run(conv, backend, false);
     }
-    template <typename Conv, typename Run>
-    std::vector<float> run(const Conv& conv, const Backend& backend, bool to_bf16,
-                           const Run& run_conv) const {
+    template <typename Conv>
+    std::vector<float> run(const Conv& conv, const Backend& backend, bool to_bf16) const {
         const Numbers numbers{backend};
         const std::vector<float> a = as_read(numbers, first, kFirst),
                                  b = as_read(numbers, second, kSecond);
         const int units = to_bf16 ? numbers.units(kOutputs) : kOutputs;
         test::Guarded out{std::size_t(height * width * units)},
             scratch{conv.scratch_size(height, width)};
-        run_conv({.in = {{{a.data(), std::ptrdiff_t(pitch()) * numbers.units(kFirst)},
+        conv.run({.in = {{{a.data(), std::ptrdiff_t(pitch()) * numbers.units(kFirst)},
                           {b.data(), std::ptrdiff_t(pitch()) * numbers.units(kSecond)}}},
                   .out = out.data(),
                   .out_pitch = std::ptrdiff_t(width) * units,
                   .to_bf16 = to_bf16,
                   .height = height,
                   .width = width},
-                 units, scratch.data());
+                 scratch.data());
         EXPECT_TRUE(out.intact() && scratch.intact()) << "written outside";
         std::vector<float> values(out.data(), out.data() + height * width * units);
         if (!to_bf16) return values;

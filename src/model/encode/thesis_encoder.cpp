@@ -96,8 +96,7 @@ void ThesisEncoder::step(const VoxelGrid& grid, LatentCodes& latent) noexcept {
         Array3<float>& codes = latent.values;
         head_[2].run(
             {y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), codes.pixel(tile.y0, tile.x0).data(),
-             std::ptrdiff_t(codes.width()) * codes.channels(), codes.channels(), tile.height(),
-             tile.width()},
+             std::ptrdiff_t(codes.width()) * codes.channels(), tile.height(), tile.width()},
             scratch);
         latent_.mark_changed(i);
     });
@@ -109,7 +108,6 @@ ConvCall ThesisEncoder::into_raw(const Tile& tile, const float* in, std::ptrdiff
             pitch,
             raw_.pixel(tile.y0, tile.x0).data(),
             std::ptrdiff_t(raw_.width()) * channels_,
-            channels_,
             tile.height(),
             tile.width()};
 }
@@ -215,7 +213,7 @@ void ThesisEncoder::step_half() noexcept {
             const Tile& region = target.region;
             const std::ptrdiff_t row = std::ptrdiff_t(region.width()) * channels_;
             down_.run(ConvCall{x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), wide, row,
-                               channels_, region.height(), region.width()},
+                               region.height(), region.width()},
                       wide + region.height() * row);
             backend_.f32->elu(wide, wide, std::size_t(region.height() * row));
             for (int y = 0; y < region.height(); ++y)

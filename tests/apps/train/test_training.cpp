@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <sstream>
@@ -171,6 +172,19 @@ TEST(Training, ALogThatWasCutShortGoesOnInALineOfItsOwn) {
                          : std::vector<std::string>{"step", "1", "1", "2"};
         EXPECT_EQ(begins, expected);
     }
+}
+
+TEST(Training, StepsWithoutAFiniteGradientAreCountedThroughAResumption) {
+    constexpr std::size_t kSkipped = 12;
+    TrainOptions options = tiny_options(empty_folder("skips"));
+    options.log_every = 1;
+    options.loss.l1 = std::numeric_limits<double>::infinity();
+    options.steps = 2;
+    train(*trainer(options));
+    options.resume = (fs::path{options.out} / "checkpoint.safetensors").string();
+    options.steps = 4;
+    train(*trainer(options));
+    EXPECT_EQ(logged(options.out, kSkipped), (std::vector<double>{1, 2, 3, 4}));
 }
 
 /// Streams of one share or of two, of which all images count.
