@@ -100,6 +100,32 @@ TEST_F(CInterface, ASilenceIsRenderedWhereThatIsAllowed) {
     }
 }
 
+TEST_F(CInterface, FramesHaveNoSigmaAndNoImageCorrectsThemWhereThatIsNotWanted) {
+    eventide_options options = repeatable_options();
+    options.sigma = options.images = 0;
+    ASSERT_EQ(open_with(options), EVENTIDE_OK);
+    const eventide_event before{1000, 3, 4, 1}, after{60'000, 5, 6, 0};
+    const std::vector<std::uint16_t> grey(64 * 48, 52'428);
+    const eventide_image image{.t = 15'000,
+                               .exposure_begin = 12'000,
+                               .exposure_end = 18'000,
+                               .x = 0,
+                               .y = 0,
+                               .width = 64,
+                               .height = 48,
+                               .pixels = grey.data()};
+    ASSERT_EQ(eventide_push(reconstructor_, &before, 1), EVENTIDE_OK);
+    ASSERT_EQ(eventide_push_image(reconstructor_, &image), EVENTIDE_OK);
+    ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);
+    eventide_frame frame;
+    ASSERT_EQ(eventide_next(reconstructor_, &frame), EVENTIDE_OK);
+    EXPECT_NE(frame.intensity, nullptr);
+    EXPECT_EQ(frame.sigma, nullptr);
+    eventide_counters counters;
+    ASSERT_EQ(eventide_count(reconstructor_, &counters), EVENTIDE_OK);
+    EXPECT_EQ(counters.used_images, 0U);
+}
+
 TEST_F(CInterface, ImagesCorrectFrames) {
     open();
     const eventide_event before{1000, 3, 4, 1}, after{60'000, 5, 6, 0};

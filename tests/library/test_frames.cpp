@@ -88,6 +88,49 @@ TEST_F(Frames, AfterAResetAreThoseOfAFreshReconstructor) {
     EXPECT_TRUE(frames_of(reconstructor, 1) == fresh);
 }
 
+TEST_F(Frames, AfterAResetKnowNoImageOfBefore) {
+    const auto events = events_of(recording());
+    Reconstructor used = reconstructor(repeatable("7ms", 0));
+    Reconstructor fresh = reconstructor(repeatable("7ms", 0));
+    Batch image;
+    image.images.emplace_back().t = events[events.size() / 2].t;  // which has not come yet
+    image.images.back().pixels = Array2<std::uint16_t>(48, 64);
+    used.push(std::span{events}.first(events.size() / 4));
+    used.push(image);
+    used.reset();
+    std::string after, expected;
+    for (auto [reconstructor, frames] : {std::pair{&used, &after}, {&fresh, &expected}}) {
+        reconstructor->push(events);
+        reconstructor->finish();
+        append_frames(*reconstructor, *frames);
+    }
+    EXPECT_TRUE(after == expected);
+    EXPECT_EQ(used.counters().used_images, 0U);
+}
+
+TEST_F(Frames, HaveNoSigmaWhereNoneIsWanted) {
+    ReconstructorOptions options = repeatable("7ms", 0);
+    Reconstructor with = reconstructor(options);
+    options.sigma = false;
+    Reconstructor without = reconstructor(options);
+    const auto events = events_of(recording());
+    for (Reconstructor* one : {&with, &without}) {
+        one->push(events);
+        one->finish();
+    }
+    Frame both, intensity;
+    int frames = 0;
+    for (; with.next(both) && without.next(intensity); ++frames) {
+        EXPECT_EQ(both.intensity, intensity.intensity);
+        EXPECT_FALSE(both.sigma.empty());
+        EXPECT_TRUE(intensity.sigma.empty());
+    }
+    EXPECT_GT(frames, 5);
+    EXPECT_FALSE(without.next(intensity));
+    EXPECT_GT(without.counters().event_windows, 5U);
+    EXPECT_EQ(without.counters().event_windows, with.counters().event_windows);
+}
+
 TEST_F(Frames, OfOtherSizesAreCorrectedToo) {
     EventReader reader{recording()};
     Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 0));

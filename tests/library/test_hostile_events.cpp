@@ -18,7 +18,8 @@ TEST_F(HostileEvents, AreLeftOutAndCounted) {
         if (i % 100 == 50) {
             events.push_back({good[i].t - SensorDuration{5000}, 1, 1, Polarity::on});
             events.push_back({good[i].t, 64, 0, Polarity::on});
-            events.push_back({good[i].t, 0, 65535, Polarity::on});
+            events.push_back(
+                {good[i].t, 0, std::uint16_t(i % 200 == 50 ? 48 : 65535), Polarity::on});
             events.push_back({from_us(kMax), 1, 1, Polarity::on});
             events.push_back({from_us(std::numeric_limits<std::int64_t>::min()), 1, 1});
         }

@@ -53,6 +53,29 @@ private:
     int batches_ = 0;
 };
 
+TEST_F(LostData, MakeTheStateBeginAnewWhereThatIsAsked) {
+    // What the network remembers of events that came before data were lost.
+    const auto state_after = [this](std::uint16_t early_x, bool reset_on_gap) {
+        ReconstructorOptions options = repeatable("7ms", 0);
+        options.reset_on_gap = reset_on_gap;
+        options.allow_silence = true;
+        Reconstructor reconstructor = this->reconstructor(options);
+        std::vector<Event> events{{from_us(1), 1, 1, Polarity::on}};
+        for (int i = 0; i < 20; ++i)
+            events.push_back({from_us(1000 + 10 * i), early_x, std::uint16_t(i), Polarity::on});
+        events.push_back({from_us(30'000), 5, 5, Polarity::on});
+        reconstructor.push(events);
+        reconstructor.mark_gap();
+        reconstructor.push(std::vector<Event>{{from_us(60'000), 7, 7, Polarity::off}});
+        reconstructor.finish();
+        Frame frame;
+        while (reconstructor.next(frame)) continue;
+        return reconstructor.state();
+    };
+    EXPECT_TRUE(state_after(10, true) == state_after(50, true));
+    EXPECT_FALSE(state_after(10, false) == state_after(50, false));
+}
+
 TEST_F(LostData, OfASourceAreMarkedToo) {
     const auto events = events_of(recording());
     LossySource source{events};

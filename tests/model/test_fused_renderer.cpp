@@ -169,6 +169,25 @@ TEST(FusedRenderer, AfterAResetAnotherClockCounts) {
     }
 }
 
+TEST(FusedRenderer, AfterAResetFramesAreThoseOfAFreshOne) {
+    for (const int lookahead : {0, 1, 2}) {
+        const auto frame_of = [lookahead](Chain& chain, float grey) {
+            std::vector<SensorTime> ends;
+            for (int i = 0; i < 6; ++i) {
+                const Window window = chain.encode_next(Kind::patch);
+                chain.fused.give(image_of(i % 2 == 0 ? ramp() : constant(grey), window.end));
+                chain.push(.3F);
+                ends.push_back(window.end);
+            }
+            return chain.shown(ends[std::size_t(5 - lookahead)]).intensity;
+        };
+        Chain used{lookahead}, fresh{lookahead};
+        frame_of(used, .9F);
+        used.begin_anew();
+        EXPECT_EQ(frame_of(used, .2F), frame_of(fresh, .2F)) << lookahead;
+    }
+}
+
 TEST(FusedRenderer, AnImageWithoutPixelsTellsNothing) {
     Chain chain{0};
     ReferenceImage none;

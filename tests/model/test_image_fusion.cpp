@@ -117,6 +117,21 @@ TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSameFrame) {
         for (int x = 0; x < 20; ++x) ASSERT_EQ(cut.intensity(y, x), whole.intensity(y + 7, x + 11));
 }
 
+TEST_F(ImageFusionTest, APartShowsItsOwnRowsOfTheImage) {
+    Array2<float> downwards = constant(0);
+    for (int y = 0; y < kHeight; ++y)
+        for (float& v : downwards.row(y)) v = .1F + .8F * float(y) / kHeight;
+    advance(50);
+    ASSERT_TRUE(correct(downwards, 50));
+    RenderRequest request;
+    const Frame whole = shown(50, request);
+    request.region = {3, 5, 8, 6};
+    const Frame part = shown(50, request);
+    EXPECT_GT(whole.intensity(10, 4) - whole.intensity(5, 4), .1F);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 8; ++x) ASSERT_EQ(part.intensity(y, x), whole.intensity(y + 5, x + 3));
+}
+
 TEST_F(ImageFusionTest, ASaturatedImageSaysAtLeastSoBrightAndABlackOneAtMost) {
     // What is added to a model that shows `model`, when the image says `seen`.
     const auto added = [&](float model, float seen) {

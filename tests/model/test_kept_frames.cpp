@@ -297,6 +297,16 @@ TEST(KeptFrames, TheOneUsedLongestAgoMakesRoom) {
     EXPECT_FALSE(is_kept(.1));
 }
 
+TEST(KeptFrames, OneThatMakesRoomForAnotherKindTellsNothingOfIt) {
+    FrameKind kind{.geometry = {.part_width = 2000, .part_height = 1200}};  // one is kept
+    KeptFrames kept;
+    kept.make_room(kind.geometry, 3);
+    kept.choose(kind, .5, 0).tiles[0] = {7, .5};
+    EXPECT_EQ(kept.choose(kind, .25, 0).tiles[0].k, 7) << "what is still true saves rendering";
+    kind.rule = kind.rule == SigmaRule::mixture ? SigmaRule::log_blend : SigmaRule::mixture;
+    EXPECT_EQ(kept.choose(kind, .5, 0).tiles[0].k, 0);
+}
+
 TEST_F(KeptFramesOfCodes, ResetForgetsThoseOfEachSize) {
     Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
     for (int stream = 1; stream <= 3; ++stream) {

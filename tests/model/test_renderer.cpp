@@ -45,6 +45,27 @@ TEST(Renderer, ALiveEdgeThatFadesBeginsWithWhatWasShownLast) {
     EXPECT_GT(changes_at_the_live_edge(config).first, 0.1 * whole) << "the test sees a jump";
 }
 
+TEST(Renderer, AfterAResetFramesAreThoseOfAFreshOne) {
+    const ModelConfig config = config_of(1);
+    const Model model = test::random_model(config, 3);
+    for (const Engine engine : {Engine::fast, Engine::plain}) {
+        Renderer used{model, 13, 9, with(engine)}, fresh{model, 13, 9, with(engine)};
+        const auto frame_of = [&](Renderer& renderer, int windows, int codes) {
+            for (int k = 1; k <= windows; ++k) {
+                LatentMap latent = random_latent(config, 9, 13, codes + k);
+                latent.window = random_latent(config, 1, 1, k).window;
+                renderer.push(latent);
+            }
+            const RenderRequest request{.t = random_latent(config, 1, 1, windows).window.end};
+            Frame frame = renderer.make_output(request);
+            renderer.render(request, frame);
+            return frame.intensity;
+        };
+        for (const int windows : {1, 2, 3}) frame_of(used, windows, 10), used.reset();
+        EXPECT_EQ(frame_of(used, 3, 20), frame_of(fresh, 3, 20));
+    }
+}
+
 TEST(Renderer, ARegionIsAPartOfTheWhole) {
     const ModelConfig config = config_of(1);
     for (const Engine engine : {Engine::fast, Engine::plain}) {

@@ -119,6 +119,15 @@ TEST(FrameSchedule, BeginsWhereItIsAsked) {
     EXPECT_EQ(frames[1].first, 510'005);
     FrameSchedule without_rate({}, from_us(500'005));
     for (const auto& frame : frames_of(without_rate, windows)) EXPECT_GE(frame.first, 500'005);
+    FrameSchedule at_an_end({}, windows[2].end);
+    EXPECT_EQ(frames_of(at_an_end, windows).front().first, to_us(windows[2].end));
+}
+
+TEST(FrameSchedule, OfAStreamThatBeginsLaterThanAskedBeginsWithIt) {
+    FrameSchedule schedule({100, 1}, from_us(5));
+    EXPECT_EQ(
+        frames_of(schedule, {{from_us(1'000'000), from_us(1'015'000)}}),
+        (std::vector<std::pair<std::int64_t, std::uint64_t>>{{1'000'000, 0}, {1'010'000, 1}}));
 }
 
 TEST(FrameSchedule, BeginsAnewWithTheCamerasClockAndGoesOnCounting) {
@@ -144,6 +153,16 @@ TEST(FrameSchedule, ANewRateGoesOnFromTheLastFrame) {
     EXPECT_EQ(frames_of(schedule,
                         {{from_us(40'000), from_us(60'000)}, {from_us(60'000), from_us(140'000)}}),
               (Frames{{85'001, 6}, {135'001, 7}}));
+}
+
+TEST(FrameSchedule, ANewRateOfANewClockBeginsWithThat) {
+    FrameSchedule schedule({100, 1});
+    using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+    EXPECT_EQ(frames_of(schedule, {{from_us(9'000'000), from_us(9'005'000)}}),
+              (Frames{{9'000'000, 0}}));
+    schedule.change_rate({200, 1});
+    schedule.restart();
+    EXPECT_EQ(frames_of(schedule, {{from_us(7), from_us(6'000)}}), (Frames{{7, 1}, {5'007, 2}}));
 }
 
 TEST(FrameSchedule, ARateCanBeginWhereThereWasNone) {

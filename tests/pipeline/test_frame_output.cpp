@@ -206,44 +206,51 @@ TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
     EXPECT_EQ(good.closed, 1);
 }
 
-/// Its third frame has a NaN.
+/// Its third frame has a NaN, in its intensity or its sigma.
 class BreakingRenderer final : public RenderStage {
 public:
+    explicit BreakingRenderer(bool in_sigma) : in_sigma_(in_sigma) {}
     Frame make_output() const override { return good_.make_output(); }
     void take(LatentMap& latent) noexcept override { good_.take(latent); }
     void finish() noexcept override { good_.finish(); }
     void reset() noexcept override { good_.reset(); }
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
         good_.render(t, window, frame);
-        if (++rendered_ == 3) frame.intensity(1, 2) = std::numeric_limits<float>::quiet_NaN();
+        if (in_sigma_ && frame.sigma.empty()) frame.sigma = frame.intensity;
+        if (++rendered_ == 3)
+            (in_sigma_ ? frame.sigma : frame.intensity)(1, 2) =
+                std::numeric_limits<float>::quiet_NaN();
     }
 
 private:
+    bool in_sigma_;
     ToyRenderer good_;
     int rendered_ = 0;
 };
 
 TEST(FrameOutput, WritesNoFrameThatIsNotFinite) {
-    BreakingRenderer renderer;
-    ToySink sink;
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&sink}, {{200'000, 1}, {}, 0, false, 1}, [] { return 0; }, stop, counters,
-        keeper);
-    Encoded encoded;
-    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-    encoded.latent.window = {from_us(0), from_us(100)};
-    try {
-        output.take(encoded);
-        FAIL() << "nothing was thrown";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find("frame 2, at 10 us"), std::string::npos);
+    for (const bool in_sigma : {false, true}) {
+        BreakingRenderer renderer{in_sigma};
+        ToySink sink;
+        StopRequest stop;
+        Counters counters;
+        LatencyKeeper keeper{{}};
+        FrameOutput output(
+            renderer, {&sink}, {{200'000, 1}, {}, 0, false, 1}, [] { return 0; }, stop, counters,
+            keeper);
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(0), from_us(100)};
+        try {
+            output.take(encoded);
+            FAIL() << "nothing was thrown";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            EXPECT_NE(std::string(error.what()).find("frame 2, at 10 us"), std::string::npos);
+        }
+        EXPECT_EQ(sink.count, 2U);
+        EXPECT_EQ(counters.snapshot().broken_frames, 1U);
     }
-    EXPECT_EQ(sink.count, 2U);
-    EXPECT_EQ(counters.snapshot().broken_frames, 1U);
 }
 
 TEST(FrameOutput, StopsWhenASinkWantsNoMore) {
@@ -298,6 +305,15 @@ TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
     EXPECT_EQ(e.times().size(), 15U);
     EXPECT_EQ(e.lookaheads, (std::vector<int>{2, 2, 2, 2, 2, 2, 2, 1, 1, 0, 0, 1, 1, 0, 0}));
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
+}
+
+TEST(FrameOutput, KeepsItsLookaheadWhereOneIsAskedForThatThereIsNot) {
+    for (const int impossible : {3, 1000, -1}) {
+        Ending e(1);
+        e.changes.set_lookahead(impossible);
+        for (int k = 0; k < 4; ++k) e.give(10 * k);
+        EXPECT_EQ(e.times().back(), 30) << impossible << ": all but the last window's frames";
+    }
 }
 
 TEST(FrameOutput, KeepsWhatItsRendererCannotChange) {

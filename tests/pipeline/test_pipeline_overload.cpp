@@ -220,6 +220,7 @@ TEST(Pipeline, ALiveLineGoesOnGivingFramesInSilence) {
     EXPECT_EQ(line.sink.count, 40U);
     EXPECT_GE(line.sink.seen.back().t_us, 19'000) << "events ended at 3001";
     EXPECT_GT(line.snapshot().silent_windows, 0U);
+    EXPECT_LT(line.snapshot().silent_windows, line.snapshot().event_windows);
 }
 
 }  // namespace

@@ -171,8 +171,8 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
     layers_.push_back(std::move(layer));
 }
 
-/// An eighth of the shorter side across, in view (but for moments, where things are fast), and as
-/// bright all over.
+/// An eighth of the shorter side across, and as bright all over. It turns back at the edge of the
+/// view; a fast one goes far beyond it before it does.
 void Scene::add_lamp(const SceneSettings& settings) {
     Layer layer;
     layer.texture = &(*textures_)[0];
