@@ -4,6 +4,8 @@ import sys
 
 import eventide
 
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
 recording, out_name = sys.argv[1:]
 reader = eventide.open(recording)
 reconstructor = eventide.Reconstructor(

@@ -9,8 +9,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace eventide::app {
@@ -150,6 +152,13 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> arguments) {
     return arguments;
 }
 
+/// What was meant by a word that is no command: a recording, without the command.
+std::string command_suggestion(const std::string& word, const std::vector<std::string>& commands) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(word, ignored)) return suggestion(word, commands);
+    return "; did you mean eventide run " + word + " --out video.mp4?";
+}
+
 /// Of all arguments that were not expected, the first says most.
 [[noreturn]] void refuse_extras(const std::vector<std::string>& arguments, const CLI::App& app,
                                 const std::string& command) {
@@ -160,8 +169,8 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> arguments) {
         const auto first = std::find_if(arguments.begin(), arguments.end(),
                                         [](const auto& text) { return !text.starts_with("-"); });
         if (first != arguments.end())
-            throw Error(ErrorKind::usage,
-                        "there is no command '" + *first + "'" + suggestion(*first, names) + help);
+            throw Error(ErrorKind::usage, "there is no command '" + *first + "'" +
+                                              command_suggestion(*first, names) + help);
     }
     std::vector<std::string> flags = flags_of(app);
     if (!command.empty()) {

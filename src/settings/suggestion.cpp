@@ -2,6 +2,7 @@
 #include "src/settings/suggestion.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide {
 
@@ -24,17 +25,26 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return d[a.size()][b.size()];
 }
 
+/// --output is --out, eval evaluate.
+bool one_begins_the_other(std::string_view a, std::string_view b) {
+    constexpr std::size_t kFewest = 3;  // letters that say something
+    if (a.size() > b.size()) std::swap(a, b);
+    return a.size() >= kFewest && b.starts_with(a);
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view typed, const std::vector<std::string>& words) {
     const std::size_t most = std::clamp<std::size_t>(typed.size() / 3, 1, 3);
     const std::string* best = nullptr;
     std::size_t least = most + 1;
-    for (const std::string& word : words)
-        if (const std::size_t n = distance(typed, word); n < least) {
-            best = &word;
-            least = n;
-        }
+    for (const std::string& word : words) {
+        std::size_t n = distance(typed, word);
+        if (one_begins_the_other(typed, word)) n = std::min(n, most);
+        if (n >= least) continue;
+        best = &word;
+        least = n;
+    }
     return best ? "; did you mean " + *best + "?" : "";
 }
 

@@ -33,6 +33,24 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
     }
 }
 
+TEST(FusedRenderer, AnImageFromBeforeTheFirstWindowIsTheFirstFrame) {
+    for (const int lookahead : {0, 1, 2}) {
+        Chain chain{lookahead};
+        SensorTime first{};
+        for (int i = 0; i < 3; ++i) {
+            const Window window = chain.encode_next(Kind::silence);
+            if (i == 0) {
+                first = window.begin + SensorDuration{1};
+                chain.fused.give(image_of(ramp(), window.begin - SensorDuration{4'000}));
+            }
+            chain.push(0);
+        }
+        const Frame frame = chain.shown(first);
+        for (std::size_t i = 0; i < frame.intensity.values().size(); ++i)
+            ASSERT_NEAR(frame.intensity.values()[i], ramp().values()[i], 5e-3) << lookahead;
+    }
+}
+
 /// What the flow was found with at a window's end is what a frame shows there.
 void expect_none_rendered_twice(const RenderRequest& request) {
     Chain chain{0};

@@ -15,6 +15,14 @@ TEST(Suggestion, IsTheNearestWord) {
     EXPECT_EQ(suggestion("rnu", {"run", "info"}), "; did you mean run?");
 }
 
+TEST(Suggestion, IsOneThatBeginsAlikeWhereNoneIsNearer) {
+    EXPECT_EQ(suggestion("--uncert", kFlags), "; did you mean --uncertainty?");
+    EXPECT_EQ(suggestion("--output", {"--overwrite", "--out"}), "; did you mean --out?");
+    EXPECT_EQ(suggestion("eval", {"run", "evaluate"}), "; did you mean evaluate?");
+    EXPECT_EQ(suggestion("--sizes", {"--siz", "--size"}), "; did you mean --size?");
+    EXPECT_EQ(suggestion("--", kFlags), "") << "says nothing";
+}
+
 TEST(Suggestion, IsEmptyWhereNothingIsNear) {
     EXPECT_EQ(suggestion("--threads", kFlags), "");
     EXPECT_EQ(suggestion("", kFlags), "");

@@ -246,6 +246,9 @@ TEST_F(WrongUsage, IsAnsweredWithWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", "davis:", "--input-format", "evt3", "--out", "null"},
            "--input-format evt3: expected a recording as SOURCE, found davis:");
     expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
+    expect(2, {recording()},
+           "there is no command '" + recording() + "'; did you mean eventide run " + recording() +
+               " --out video.mp4?");
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");
     expect(2, {"run", "--out", "null", "--", recording(), "--fps", "9"},
