@@ -2,6 +2,7 @@
 #include "pipeline/filters/hot_pixels.h"
 
 #include "src/core/error.h"
+#include "src/core/text_piece.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>
@@ -31,8 +32,8 @@ HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::pat
         if (!(words >> x >> y) || words >> rest || x < 0 || y < 0 || x >= width || y >= height)
             throw Error(ErrorKind::usage, list.string() + ":" + std::to_string(number) +
                                               ": expected \"x,y\" inside " + std::to_string(width) +
-                                              "x" + std::to_string(height) + ", found '" + line +
-                                              "'");
+                                              "x" + std::to_string(height) + ", found '" +
+                                              piece_of(line) + "'");
         listed_[std::size_t(y) * std::size_t(width) + std::size_t(x)] = 1;
     }
 }
