@@ -30,11 +30,14 @@ std::string suggestion(std::string_view typed, const std::vector<std::string>& w
     const std::size_t most = std::clamp<std::size_t>(typed.size() / 3, 1, 3);
     const std::string* best = nullptr;
     std::size_t least = most + 1;
-    for (const std::string& word : words)
+    for (const std::string& word : words) {
+        const std::size_t longer = std::max(typed.size(), word.size());
+        if (longer - std::min(typed.size(), word.size()) >= least) continue;  // so far at least
         if (const std::size_t n = distance(typed, word); n < least) {
             best = &word;
             least = n;
         }
+    }
     return best ? "; did you mean " + *best + "?" : "";
 }
 
