@@ -9,7 +9,8 @@
 namespace eventide {
 
 void read_camera_settings(const std::filesystem::path& file, const std::vector<Setting>& settings) {
-    if (!std::filesystem::is_regular_file(file))
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none))
         throw Error(ErrorKind::usage, "camera settings '" + file.string() + "': no such file");
     if (file.extension() == ".bias")
         throw Error(ErrorKind::usage, "camera settings '" + file.string() +

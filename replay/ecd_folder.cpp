@@ -6,6 +6,7 @@
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/text_piece.h"
 #include "src/core/whole_sensor.h"
 #include "src/io/input_file.h"
 
@@ -89,7 +90,7 @@ void remark(EcdImages& images, const std::string& first_bad_line) {
     if (images.bad_entries > 0)
         images.remarks.push_back(
             "images.txt: expected a time in seconds and a file in the folder, found \"" +
-            first_bad_line + "\"; " + std::to_string(images.bad_entries) +
+            piece_of(first_bad_line) + "\"; " + std::to_string(images.bad_entries) +
             " such lines are left out");
     std::size_t missing = 0;
     std::string first;
@@ -97,8 +98,8 @@ void remark(EcdImages& images, const std::string& first_bad_line) {
     for (const auto& entry : images.entries)
         if (!fs::is_regular_file(entry.path, none) && ++missing == 1) first = entry.path;
     if (missing > 0)
-        images.remarks.push_back("images.txt: expected " + first + ", found no such file; " +
-                                 std::to_string(missing) + " of " +
+        images.remarks.push_back("images.txt: expected " + piece_of(first) +
+                                 ", found no such file; " + std::to_string(missing) + " of " +
                                  std::to_string(images.entries.size()) + " images are not there");
 }
 

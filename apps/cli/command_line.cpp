@@ -55,10 +55,6 @@ std::string footer_of(const std::string& text) {
     return lines;
 }
 
-std::string help_of(const Setting& setting) {
-    return wrapped(help_with_default(setting));
-}
-
 std::string group_of(const Setting& setting) {
     return setting.group.empty() ? "Options" : setting.group;
 }
@@ -72,6 +68,12 @@ public:
                 add_flag(app, setting);
             else
                 add_option(app, setting);
+    }
+
+    /// For --help: what they do and what they are by default, of the table that was added.
+    void describe(const SettingTable& table) {
+        for (std::size_t i = 0; i < entries_.size(); ++i)
+            entries_[i].option->description(wrapped(help_with_default(table.settings[i])));
     }
 
     FlagValues given() const {
@@ -98,8 +100,7 @@ private:
     void add_flag(CLI::App& app, const Setting& setting) {
         const std::string flag = flag_of(setting);
         CLI::Option* opposite = app.add_flag("--no-" + flag.substr(2))->group("");
-        const std::string help = help_of(setting);
-        CLI::Option* option = app.add_flag(flag, help)->group(group_of(setting));
+        CLI::Option* option = app.add_flag(flag)->group(group_of(setting));
         entries_.push_back({setting.key, option, opposite});
     }
 
@@ -107,8 +108,7 @@ private:
         const std::string flag = flag_of(setting);
         const std::string names =
             setting.short_flag.empty() ? flag : setting.short_flag + "," + flag;
-        const std::string help = help_of(setting);
-        CLI::Option* option = app.add_option(names, help);
+        CLI::Option* option = app.add_option(names);
         // One value each: `--out a/ b` must not swallow b.
         option->group(group_of(setting))
             ->type_name(setting.value_name)
@@ -124,11 +124,47 @@ private:
 };
 
 void add(CLI::App& app, const Positional& positional) {
-    const std::string help = wrapped(positional.help);
     CLI::Option* option = positional.value != nullptr
-                              ? app.add_option(positional.name, *positional.value, help)
-                              : app.add_option(positional.name, *positional.values, help);
-    option->type_name("");
+                              ? app.add_option(positional.name, *positional.value)
+                              : app.add_option(positional.name, *positional.values);
+    option->type_name("")->description(wrapped(positional.help));
+}
+
+/// A command that can be given.
+struct Offered {
+    std::unique_ptr<Command> command;
+    CLI::App* app = nullptr;
+    Options options;  // none where no argument names it
+};
+
+Offered offer(CLI::App& app, std::unique_ptr<Command> command,
+              const std::vector<std::string>& arguments) {
+    Offered offered{std::move(command), nullptr, {}};
+    const std::string name = offered.command->name();
+    offered.app = app.add_subcommand(name);
+    // What no argument names is not the one given: hundreds of options less to make.
+    if (std::ranges::find(arguments, name) == arguments.end()) return offered;
+    for (const Positional& positional : offered.command->positionals())
+        add(*offered.app, positional);
+    offered.options.add(*offered.app, offered.command->settings());
+    return offered;
+}
+
+/// All the words of --help, which take longer to make than arguments to read.
+void describe(CLI::App& app, std::vector<Offered>& commands, Options& common_options,
+              const SettingTable& common) {
+    app.footer(
+        footer_of(std::string{"Examples:\n"
+                              "  eventide run recording.aedat4 --out video.mp4\n"
+                              "  eventide info recording.raw\n"
+                              "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
+                  kExitCodes));
+    common_options.describe(common);
+    for (Offered& each : commands) {
+        each.app->description(wrapped(each.command->summary()));
+        each.app->footer(footer_of(each.command->examples()));
+        each.options.describe(each.command->settings());
+    }
 }
 
 /// The command that was given; empty: none.
@@ -219,13 +255,7 @@ std::string help_hint(const std::string& command) {
 Parsed parse_command_line(const std::vector<std::string>& given, const SettingTable& common) {
     const std::vector<std::string> arguments = with_help_as_flag(given);
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
-    app.footer(
-        footer_of(std::string{"Examples:\n"
-                              "  eventide run recording.aedat4 --out video.mp4\n"
-                              "  eventide info recording.raw\n"
-                              "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
-                  kExitCodes));
-    app.set_version_flag("--version", version_text());
+    app.set_version_flag("--version", version_text);
     app.require_subcommand(0, 1);
     app.fallthrough();
     Invocation invocation;
@@ -243,24 +273,16 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     Options common_options;
     common_options.add(app, common);
 
-    auto commands = all_commands();
-    std::vector<Options> options(commands.size());
-    std::vector<CLI::App*> apps;
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-        CLI::App* sub = app.add_subcommand(commands[i]->name(), wrapped(commands[i]->summary()));
-        apps.push_back(sub);
-        // A command that no argument names is not the one given: hundreds of options less to make.
-        if (std::ranges::find(arguments, commands[i]->name()) == arguments.end()) continue;
-        sub->footer(footer_of(commands[i]->examples()));
-        for (const Positional& positional : commands[i]->positionals()) add(*sub, positional);
-        options[i].add(*sub, commands[i]->settings());
-    }
+    std::vector<Offered> commands;
+    for (auto& command : all_commands())
+        commands.push_back(offer(app, std::move(command), arguments));
     try {
         // CLI11 takes them from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::Success& success) {  // --help, --version
         if (command_of(app).empty() && !arguments.front().starts_with("-"))
             refuse_extras(arguments, app, {});
+        describe(app, commands, common_options, common);
         app.exit(success, std::cout, std::cerr);
         return {};
     } catch (const CLI::ExtrasError&) {
@@ -274,13 +296,14 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
         std::cout << default_config();
         return {};
     }
-    for (std::size_t i = 0; i < commands.size(); ++i)
-        if (apps[i]->parsed()) {
-            invocation.command_flags = options[i].given();
-            invocation.command = std::move(commands[i]);
+    for (Offered& each : commands)
+        if (each.app->parsed()) {
+            invocation.command_flags = each.options.given();
+            invocation.command = std::move(each.command);
         }
     invocation.common_flags = common_options.given();
     if (!invocation.command && !invocation.print_config) {
+        describe(app, commands, common_options, common);
         std::cerr << app.help();
         return {{}, int(ErrorKind::usage)};
     }

@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/text_piece.h"
 #include "src/io/input_file.h"
 
 #include <nlohmann/json.hpp>
@@ -21,12 +22,6 @@ constexpr int kMaxDepth = 16;  // of JSON, which is printed recursively
 
 [[noreturn]] void refuse(const std::string& place, const std::string& what) {
     throw Error(ErrorKind::usage, place + ": " + what);
-}
-
-/// What a message shows of what it found.
-std::string piece_of(const std::string& text) {
-    constexpr std::size_t kMaxShown = 160;
-    return text.size() <= kMaxShown ? text : text.substr(0, kMaxShown) + "...";
 }
 
 std::string text_in(const std::filesystem::path& file) {

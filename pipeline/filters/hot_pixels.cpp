@@ -2,6 +2,7 @@
 #include "pipeline/filters/hot_pixels.h"
 
 #include "src/core/error.h"
+#include "src/core/text_piece.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>
@@ -17,7 +18,6 @@ HotPixelFilter::HotPixelFilter(int width, int height) : width_{width} {
 HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::path& list)
     : width_{width}, listed_(std::size_t(width) * std::size_t(height)) {
     constexpr std::size_t kLargestList = std::size_t{64} << 20;  // a few million pixels
-    constexpr std::size_t kMostShown = 80;                       // of a line that is none
     std::istringstream file{read_text_file(list, ErrorKind::usage, kLargestList)};
     int number = 0;
     for (std::string line; std::getline(file, line);) {
@@ -33,7 +33,7 @@ HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::pat
             throw Error(ErrorKind::usage, list.string() + ":" + std::to_string(number) +
                                               ": expected \"x,y\" inside " + std::to_string(width) +
                                               "x" + std::to_string(height) + ", found '" +
-                                              line.substr(0, kMostShown) + "'");
+                                              piece_of(line) + "'");
         listed_[std::size_t(y) * std::size_t(width) + std::size_t(x)] = 1;
     }
 }

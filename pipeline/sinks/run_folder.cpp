@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/output_file.h"
+#include "src/io/shallow_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -52,7 +53,7 @@ std::set<std::string> single_in(const Json& record, const RunFolderFiles& files)
 /// run.
 std::optional<Owned> read_record(const fs::path& folder, const RunFolderFiles& files) {
     std::ifstream stream{folder / kRunRecord};
-    const Json record = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+    const Json record = parse_shallow_json<Json>(stream);
     if (!record.is_object() || !record.contains("program") || !record["program"].is_string() ||
         !record["program"].get<std::string>().starts_with("eventide"))
         return std::nullopt;

@@ -39,8 +39,11 @@ std::string suggestion(std::string_view typed, const std::vector<std::string>& w
     const std::string* best = nullptr;
     std::size_t least = most + 1;
     for (const std::string& word : words) {
-        std::size_t n = distance(typed, word);
-        if (one_begins_the_other(typed, word)) n = std::min(n, most);
+        const std::size_t apart =  // at least
+            std::max(typed.size(), word.size()) - std::min(typed.size(), word.size());
+        const std::size_t n = one_begins_the_other(typed, word) ? std::min(apart, most)
+                              : apart < least                   ? distance(typed, word)
+                                                                : apart;
         if (n >= least) continue;
         best = &word;
         least = n;

@@ -43,6 +43,27 @@ TEST(Aedat4Damage, ADamagedTableIsCountedAndNotNeeded) {
     }
 }
 
+TEST(Aedat4Damage, ATableIsUnpackedToNoMoreThanAPacket) {
+    const Batch batch = some_of_everything();
+    Bytes file = write_file({batch}, Aedat4Compression::none);
+    const Aedat4Header header = read_aedat4_header(file);
+    Bytes table(file.begin() + header.table_position, file.end());
+    constexpr std::size_t kMore = 1 << 20;
+    table.insert(table.end(), kMore, std::byte{0});
+    const std::uint32_t size = std::uint32_t(table.size() - 4);
+    for (std::size_t i = 0; i < 4; ++i) table[i] = std::byte(size >> (8 * i) & 0xFF);
+    file.resize(std::size_t(header.table_position));
+    pack_aedat4(table, Aedat4Compression::zstd, file);
+    const auto bytes = std::span<const std::byte>(file).subspan(header.stream.data_offset);
+    for (const auto& [largest, damaged] : {std::pair{kMore, 1U}, {4 * kMore, 0U}}) {
+        Aedat4Parser parser{header, kWidth, kHeight, largest};
+        Batch parsed;
+        parser.parse(bytes, parsed);
+        parser.finish(parsed);
+        EXPECT_EQ(parser.damaged()[DamageReason::bad_table], damaged) << largest;
+    }
+}
+
 TEST(Aedat4Damage, APacketThatDoesNotUnpackCostsOnlyItself) {
     const auto events = random_events(3, 300, kWidth, kHeight);
     const std::vector<Batch> batches = in_packets(events, 3);

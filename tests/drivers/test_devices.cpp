@@ -1,5 +1,6 @@
 // Names of sources, and those that nearly are some.
 #include "drivers/devices.h"
+#include "drivers/settings_file.h"
 #include "src/core/error.h"
 
 #include <gmock/gmock.h>
@@ -38,6 +39,10 @@ TEST(Devices, ANameThatIsNoCameraSaysWhatWasMeant) {
                               "ros2:, udp: or sim:"));
         EXPECT_THAT(error.what(), HasSubstr("; did you mean dvxplorer:?"));
     }
+}
+
+TEST(Devices, CameraSettingsUnderANameThatNoFileCanHaveAreRefused) {
+    EXPECT_THROW(read_camera_settings(std::string(300, 'x'), {}), Error);
 }
 
 }  // namespace

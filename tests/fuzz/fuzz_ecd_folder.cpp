@@ -1,4 +1,5 @@
-// A folder of the Event Camera Dataset: any images.txt, a record separator (0x1E), any events.txt.
+// A folder of the Event Camera Dataset: any images.txt, events.txt and exposure.txt, with a record
+// separator (0x1E) between them.
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
@@ -30,9 +31,9 @@ struct Folder {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace eventide;
     static const Folder folder;
-    std::string_view events = text_of_input(data, size);
-    folder.hold("images.txt", take_until(events, '\x1E'));
-    folder.hold("events.txt", events);
+    std::string_view rest = text_of_input(data, size);
+    for (const char* file : {"images.txt", "events.txt", "exposure.txt"})
+        folder.hold(file, take_until(rest, '\x1E'));
     try {
         summarize(*open_recording(folder.path.string()));
     } catch (const Error&) {

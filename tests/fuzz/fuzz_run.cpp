@@ -1,9 +1,10 @@
-// eventide run as a whole, of any bytes, with the tiniest network and sensor: every stage, frames,
-// sigma. A sensor of any size is for the target recording, words of a command line for
-// command_line: here every pixel and every setting costs time. One input of eight has a thread for
-// each stage.
-#include "apps/cli/commands/run_command.h"
-#include "apps/cli/settings/config.h"
+// A run as a whole, of any bytes, with the tiniest network and sensor: every stage, frames, sigma.
+// A sensor of any size is for the target recording, words of a command line for command_line: here
+// every pixel and every setting costs time, and so would a trial of the same network each time. One
+// input of eight has a thread for each stage.
+#include "apps/cli/run/idle_flags.h"
+#include "apps/cli/run/run.h"
+#include "apps/cli/run/run_files.h"
 #include "apps/cli/signals.h"
 #include "apps/cli/terminal.h"
 #include "src/core/error.h"
@@ -14,17 +15,19 @@ namespace {
 using namespace eventide;
 using namespace eventide::app;
 
-std::map<std::string, std::vector<std::string>> flags(bool threads) {
-    return {{"model", {EVENTIDE_FUZZ_MODEL}},
-            {"input_size", {"16x12"}},
-            {"out", {"gray8:/dev/null"}},
-            {"overwrite", {"true"}},
-            {"size", {"8x6"}},
-            {"fps", {"50"}},
-            {"precision", {"f32"}},
-            {"duration", {"100ms"}},
-            {"threads", {"1"}},
-            {"sequential", {threads ? "false" : "true"}}};
+void choose(RunSettings& settings, bool threads) {
+    settings.model = EVENTIDE_FUZZ_MODEL;
+    settings.tries_model = false;
+    settings.input.size = {16, 12};
+    settings.out = {"gray8:/dev/null"};
+    settings.overwrite = true;
+    settings.size.exact = {8, 6};
+    settings.fps = {false, parse_frame_rate("50")};
+    settings.precision = Precision::f32;
+    settings.duration = SensorDuration{100'000};
+    settings.threads = 1;
+    settings.sequential = !threads;
+    settings.model_given = settings.size_given = true;
 }
 
 }  // namespace
@@ -38,13 +41,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static Signals signals;
     static MemoryFile recording;
     recording.hold(data, size);
-    RunCommand command;
-    SettingTable table = command.settings();
-    resolve_settings(table, {}, flags(size % 8 == 0));
-    *command.positionals().front().value = recording.path();
+    RunSettings settings;
+    choose(settings, size % 8 == 0);
+    settings.source = recording.path();
     Program program{signals, {}, true};
     try {
-        command.run(program);
+        name_run_files(settings, program.files);
+        refuse_idle_flags(settings, program.flags);
+        Run{program, settings}.run();
     } catch (const Error&) {
     }
     return 0;

@@ -17,6 +17,7 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" __attribute__((weak)) int LLVMFuzzerInitialize(int* argc, char*** argv);
 
 namespace {
 
@@ -106,6 +107,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: %s CORPUS RUNS\n", argv[0]);
         return 2;
     }
+    if (LLVMFuzzerInitialize != nullptr) LLVMFuzzerInitialize(&argc, &argv);
     std::vector<std::filesystem::path> files;
     if (std::filesystem::is_directory(argv[1]))
         for (const auto& entry : std::filesystem::directory_iterator{argv[1]})

@@ -122,6 +122,15 @@ TEST(EcdFolder, AStatedSizeIsTaken) {
     EXPECT_EQ(open_recording(folder.path("r"), {.width = 64, .height = 48})->info().width, 64);
 }
 
+TEST(EcdFolder, ALineAsLongAsAFileIsShownInPart) {
+    const TestFolder folder;
+    write_folder(folder);
+    const std::string endless(100'000, 'x');
+    folder.write("r/images.txt", endless + "\n0.1 images/" + endless + "\n");
+    for (const std::string& remark : open_recording(folder.path("r"))->remarks())
+        EXPECT_LT(remark.size(), 1000U);
+}
+
 TEST(EcdFolder, AnImageOfAnotherSizeIsLeftOut) {
     const TestFolder folder;
     write_folder(folder);

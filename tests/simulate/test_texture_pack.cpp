@@ -115,6 +115,9 @@ TEST_F(TexturePack, ReadsImagesOfAFolderInTheOrderOfTheirNames) {
     std::ofstream{folder_ / "c.png"} << "broken";
     EXPECT_THROW(textures_from_folder(folder_), Error);
     EXPECT_THROW(image_files(folder_ / "none"), Error);
+    const std::string too_long(300, 'x');
+    EXPECT_THROW(image_files(too_long), Error);
+    EXPECT_THROW(open_textures(too_long, 1), Error);
 }
 
 TEST(ProceduralTextures, AreTheSameForTheSameSeedAndOtherwiseNot) {

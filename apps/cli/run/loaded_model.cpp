@@ -13,9 +13,9 @@ namespace eventide::app {
 namespace {
 
 /// A model file whose network was seen to work.
-Model load_tried_model(const std::filesystem::path& file) {
+Model load_tried_model(const std::filesystem::path& file, bool tries) {
     Model model = load_model(file);
-    try_model(model, file.string());
+    if (tries) try_model(model, file.string());
     return model;
 }
 
@@ -40,7 +40,7 @@ Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions&
 
 Network::Network(const RunSettings& settings, const SensorInfo& sensor)
     : file_{find_model(settings.model)},
-      model_{load_tried_model(file_)},
+      model_{load_tried_model(file_, settings.tries_model)},
       engine_{.engine = settings.engine,
               .precision = settings.precision,
               .kernels = settings.kernels,

@@ -30,9 +30,10 @@ void name_states_out(const RunSettings& settings, NamedFiles& files) {
     if (settings.states_out.empty()) return;
     files.writes_folder("--states-out", settings.states_out);
     // Those of an earlier run, which go, are no input of this.
+    std::error_code none;
     for (std::size_t i = 0;
          i < settings.states_at.size() ||
-         (settings.overwrite && std::filesystem::exists(state_file(settings.states_out, i)));
+         (settings.overwrite && std::filesystem::exists(state_file(settings.states_out, i), none));
          ++i)
         files.writes("--states-out", state_file(settings.states_out, i));
 }

@@ -119,6 +119,7 @@ struct RunSettings {
     std::optional<int> buffers_packets;                 ///< empty: as many as a burst needs
     std::optional<int> buffers_grids, buffers_latents;  ///< empty: 3 of a live source, else 2
     bool sequential = false;
+    bool tries_model = true;  ///< no option of runs: where a program has many, of one model
 
     // for other runs
     std::string states_out;              ///< a folder

@@ -114,8 +114,10 @@ SinkName parse_sink(const std::string& sink) {
     }
     if (names_video(sink)) return {SinkKind::video, sink};
     if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
-    if (sink.ends_with('/') || std::filesystem::is_directory(sink)) return {SinkKind::folder, sink};
-    if (std::filesystem::is_fifo(sink)) return {SinkKind::stream, sink};
+    std::error_code none;  // a name that no file can have is none of these
+    if (sink.ends_with('/') || std::filesystem::is_directory(sink, none))
+        return {SinkKind::folder, sink};
+    if (std::filesystem::is_fifo(sink, none)) return {SinkKind::stream, sink};
     throw Error(ErrorKind::usage,
                 "--out " + sink +
                     ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "

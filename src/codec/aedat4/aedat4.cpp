@@ -219,7 +219,7 @@ std::size_t Aedat4Parser::read_table(std::span<const std::byte> bytes) {
 }
 
 void Aedat4Parser::check_table() {
-    const auto table = read_aedat4_table(pending_);
+    const auto table = read_aedat4_table(pending_, unpacker_.largest());
     Aedat4PacketTrace told;
     if (table)
         for (const Aedat4TableEntry& entry : table->entries) told.add(entry.stream, entry.bytes);

@@ -43,6 +43,7 @@ public:
     /// until the next call. Empty when the frame is damaged, incomplete, or too large. Throws Error
     /// (input) for such a frame in a build without EVENTIDE_COMPRESSION.
     std::optional<std::span<const std::byte>> unpack(std::span<const std::byte> packed);
+    std::size_t largest() const { return largest_; }
 
 private:
     struct Contexts;

@@ -12,7 +12,8 @@ namespace eventide {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> image_files(const fs::path& folder) {
-    if (!fs::is_directory(folder))
+    std::error_code none;
+    if (!fs::is_directory(folder, none))
         throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator{folder})
@@ -76,7 +77,8 @@ std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int
 
 std::shared_ptr<const TextureLibrary> open_textures(const fs::path& path, std::size_t procedural) {
     if (path.empty()) return procedural_textures(procedural);
-    if (fs::is_directory(path)) return textures_from_folder(path);
+    std::error_code none;  // what cannot be looked at cannot be read either, which is said then
+    if (fs::is_directory(path, none)) return textures_from_folder(path);
     return textures_from_pack(path);
 }
 

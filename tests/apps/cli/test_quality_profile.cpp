@@ -50,6 +50,12 @@ protected:
     int measured_ = 0;
 };
 
+TEST(QualityProfile, AFileOfBracketsAloneIsRefused) {
+    constexpr int kDeep = 200'000;
+    const std::string deep = std::string(kDeep, '[') + std::string(kDeep, ']');
+    EXPECT_THROW(parse_profile("{\"format\": " + deep + "}", profile().key), Error);
+}
+
 TEST_F(ProfileCache, KeepsWhatWasMeasured) {
     EXPECT_TRUE(get().measured);
     const CachedProfile again = get();

@@ -61,5 +61,9 @@ TEST(SinkName, SaysWhatIsMissing) {
         }
 }
 
+TEST(SinkName, WhatIsTooLongForAFileIsRefusedAsAnyOther) {
+    EXPECT_THROW(parse_sink(std::string(300, 'x')), Error);
+}
+
 }  // namespace
 }  // namespace eventide::app

@@ -126,5 +126,16 @@ TEST(HotPixelFilter, NamesTheLineOfAListThatIsWrong) {
     EXPECT_THROW(HotPixelFilter(32, 24, temp / "none.txt"), Error);
 }
 
+TEST(HotPixelFilter, ShowsAPieceOfAFileThatIsNoList) {
+    const test::TempFolder temp;
+    test::write_text(temp / "hot.txt", std::string(100'000, 'x'));
+    try {
+        HotPixelFilter filter{32, 24, temp / "hot.txt"};
+        ADD_FAILURE() << "taken for a list";
+    } catch (const Error& error) {
+        EXPECT_LT(std::string_view{error.what()}.size(), 1000U);
+    }
+}
+
 }  // namespace
 }  // namespace eventide

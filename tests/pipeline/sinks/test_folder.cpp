@@ -207,6 +207,20 @@ TEST(FolderSink, ARunOfAnEarlierVersionCanBeReplaced) {
     EXPECT_EQ(files_in(temp / "out/frames"), 1U);
 }
 
+TEST(FolderSink, ARecordOfBracketsAloneTakesNoStack) {
+    const TempFolder temp;
+    std::filesystem::create_directories(temp / "out/frames");
+    constexpr int kDeep = 200'000;
+    test::write_text(temp / "out/run.json",
+                     R"({"program": "eventide", "files": {"frames": 1, "x": )" +
+                         std::string(kDeep, '[') + std::string(kDeep, ']') +
+                         "}, \"finished\": true}");
+    test::write_text(temp / "out/frames/frame_0000000000.png", "old");
+    FolderSink{{.path = temp / "out", .overwrite = true}}.write(
+        test::ramp_frame(8, 8, 0, test::odd_time(0)));
+    EXPECT_NE(test::read_text(temp / "out/frames/frame_0000000000.png"), "old");
+}
+
 TEST(FolderSink, NegativeTimesKeepTheirSign) {
     const TempFolder temp;
     FolderSink sink{{.path = temp / "out"}};

@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "src/core/arithmetic_words.h"
 #include "src/core/error.h"
+#include "src/io/shallow_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -88,7 +89,7 @@ std::string profile_text(const QualityProfile& profile) {
 }
 
 QualityProfile parse_profile(const std::string& text, const ProfileKey& key) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parse_shallow_json<Json>(text);
     if (json.is_discarded()) refuse("JSON", "something else");
     if (member(json, "format") != kFormat) refuse(kFormat, json.at("format").dump());
     if (member(json, "version") != kVersion)

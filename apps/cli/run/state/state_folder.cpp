@@ -30,7 +30,8 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number) 
 
 std::vector<std::filesystem::path> earlier_states(const std::string& folder) {
     std::vector<std::filesystem::path> states;
-    for (std::size_t n = 0; std::filesystem::exists(state_file(folder, n)); ++n) {
+    std::error_code none;
+    for (std::size_t n = 0; std::filesystem::exists(state_file(folder, n), none); ++n) {
         states.push_back(state_file(folder, n));
         if (!is_stream_state(states.back()))
             throw Error(ErrorKind::usage, "--states-out " + folder +
