@@ -278,7 +278,7 @@ TEST_F(KeptFramesOfCodes, AFrameOfAWindowBeforeIsNotThatOfALaterOne) {
 
 /// Of frames as large as these two are kept.
 TEST(KeptFrames, TheOneUsedLongestAgoMakesRoom) {
-    const FrameKind kind{.geometry = {.part_width = 1200, .part_height = 800}};
+    const FrameKind kind{.geometry = {.part_width = 1200, .part_height = 800}, .read = {}};
     KeptFrames kept;
     kept.make_room(kind.geometry, 3);
     const auto is_kept = [&](double fraction) {
@@ -298,7 +298,8 @@ TEST(KeptFrames, TheOneUsedLongestAgoMakesRoom) {
 }
 
 TEST(KeptFrames, OneThatMakesRoomForAnotherKindTellsNothingOfIt) {
-    FrameKind kind{.geometry = {.part_width = 2000, .part_height = 1200}};  // one is kept
+    FrameKind kind{.geometry = {.part_width = 2000, .part_height = 1200},
+                   .read = {}};  // one is kept
     KeptFrames kept;
     kept.make_room(kind.geometry, 3);
     kept.choose(kind, .5, 0).tiles[0] = {7, .5};
