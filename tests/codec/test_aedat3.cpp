@@ -130,7 +130,7 @@ TEST(Aedat3, BehindATimestampResetTimeBeginsAnew) {
     EXPECT_EQ(to_us(parsed.data.events[2].t), 20);
     EXPECT_EQ(parsed.clock, from_us(20));
     ASSERT_EQ(parsed.data.triggers.size(), 1U);
-    EXPECT_EQ(parsed.data.triggers[0], (Trigger{from_us(5000), Trigger::Kind::timestamp_reset, 0}));
+    EXPECT_EQ(parsed.data.triggers[0], (Trigger{from_us(0), Trigger::Kind::timestamp_reset, 0}));
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 

@@ -57,19 +57,41 @@ std::string lost_datagrams(std::uint64_t lost) {
 }
 
 void EventsOut::see(const Batch& batch) {
-    const FormatHolds& holds = target_->holds();
-    const auto keep = [](const auto& some, bool held, auto& to) {
-        if (held) to.insert(to.end(), some.begin(), some.end());
-    };
-    keep(batch.images, holds.images, batch_.images);
-    keep(batch.imu, holds.imu, batch_.imu);
-    keep(batch.triggers, holds.triggers, batch_.triggers);
+    BatchPart rest{batch.events, batch.images, batch.imu, batch.triggers};
+    keep(take_clock(rest), batch_);
+    while (!rest.events.empty()) keep(take_clock(rest), next_clocks_.emplace_back());
     // process() is called with events alone; the rest does not wait for them.
     std::vector<Event> none;
     if (batch.events.empty()) process(none);
 }
 
+/// What the target holds, but events.
+void EventsOut::keep(const BatchPart& part, Batch& in) const {
+    const FormatHolds& holds = target_->holds();
+    const auto append = [](const auto& some, bool held, auto& to) {
+        if (held) to.insert(to.end(), some.begin(), some.end());
+    };
+    append(part.images, holds.images, in.images);
+    append(part.imu, holds.imu, in.imu);
+    append(part.triggers, holds.triggers, in.triggers);
+}
+
+/// What was seen of the clocks that begin among these events.
+void EventsOut::begin_clocks(std::span<const Event> events) {
+    SensorTime last = newest_;
+    for (const Event& event : events) {
+        if (next_clocks_.empty()) return;
+        if (event.t < last) {
+            const Batch& of_clock = next_clocks_.front();
+            keep({{}, of_clock.images, of_clock.imu, of_clock.triggers}, batch_);
+            next_clocks_.pop_front();
+        }
+        last = event.t;
+    }
+}
+
 void EventsOut::process(std::vector<Event>& events) {
+    begin_clocks(events);
     if (!events.empty()) newest_ = events.back().t;
     if (filter_ != nullptr) filter_->process(events);
     write(events);
@@ -109,7 +131,12 @@ void EventsOut::write(std::span<const Event> events) {
     std::erase_if(batch_.events, outside);
     std::erase_if(batch_.images, outside);
     std::erase_if(batch_.imu, outside);
-    std::erase_if(batch_.triggers, outside);
+    // A reset divides what was written from what comes, whatever the new clock shows.
+    std::erase_if(batch_.triggers, [&](const Trigger& trigger) {
+        const bool divides = has_events_ && trigger.kind == Trigger::Kind::timestamp_reset;
+        return outside(trigger) && !divides;
+    });
+    has_events_ |= !batch_.events.empty();
     data_.fit(batch_);
     if (!batch_.empty()) target_->write(batch_);
     batch_.clear();

@@ -4,8 +4,10 @@
 #include "pipeline/stages.h"
 #include "replay/convert.h"
 #include "replay/written_data.h"
+#include "src/codec/batch_parts.h"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -60,6 +62,8 @@ public:
     const WrittenData& data() const { return data_; }  ///< after the run
 
 private:
+    void keep(const BatchPart& part, Batch& in) const;
+    void begin_clocks(std::span<const Event> events);
     void write(std::span<const Event> events);
 
     EventFilter* filter_;
@@ -67,8 +71,10 @@ private:
     WrittenData data_;
     Limit from_, to_;
     Batch batch_;
+    std::deque<Batch> next_clocks_;          // seen, without the events with which they begin
     Batch later_;                            // than events that the filter holds back
     SensorTime newest_ = SensorTime::min();  // event
+    bool has_events_ = false;                // written
 };
 
 }  // namespace eventide::app

@@ -178,9 +178,10 @@ void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
         damage_.count(DamageReason::bad_record);
         return;
     }
-    // Recorders stamp resets with the last possible time, which is none.
+    // Recorders stamp resets with the last possible time, which is none: what begins is zero. With
+    // the old clock's last time nobody could tell that the reset comes behind it.
     if (is_reset && stamp == kLastStamp) {
-        trigger->t = from_us(newest_us_.value_or(base_us_));
+        trigger->t = from_us(base_us_);
     } else {
         move_clock(base_us_ + stamp);
         if (trigger) trigger->t = from_us(base_us_ + stamp);

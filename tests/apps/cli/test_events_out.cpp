@@ -16,7 +16,8 @@ namespace {
 struct KeptBatches final : ConvertTarget {
     explicit KeptBatches(std::vector<Batch>& all) : batches(all) {}
     const FormatHolds& holds() const override {
-        static const FormatHolds kAll{.events = true, .images = true};
+        static const FormatHolds kAll{
+            .events = true, .images = true, .triggers = true, .clock_resets = true};
         return kAll;
     }
     void write(const Batch& batch) override { batches.push_back(batch); }
@@ -61,6 +62,46 @@ TEST(EventsOut, ImagesDoNotWaitForEvents) {
     ASSERT_EQ(written.size(), 4U);
     EXPECT_EQ(written.back().images.size(), 1U);
     EXPECT_EQ(written.back().events.size(), 1U) << "together, as they came";
+}
+
+/// As they come in one packet, and in two of which the first ends with the reset.
+TEST(EventsOut, AResetDividesTheEventsOfTwoClocksWhereverThePacketsEnd) {
+    const std::vector<Event> old_clock{{from_us(5'000), 1, 1, Polarity::on},
+                                       {from_us(6'000), 1, 1, Polarity::on}},
+        new_clock{{from_us(10), 1, 1, Polarity::on}};
+    const Trigger reset{from_us(0), Trigger::Kind::timestamp_reset, 0};
+    for (const bool at_once : {true, false}) {
+        std::vector<Batch> written;
+        std::optional<SensorTime> from = from_us(5'500);
+        EventsOut out{nullptr, std::make_unique<KeptBatches>(written), [&] { return from; },
+                      at({})};
+        const auto take = [&](std::vector<Event> events) { out.process(events); };
+        Batch batch;
+        batch.events = old_clock;
+        if (at_once) {
+            batch.events.insert(batch.events.end(), new_clock.begin(), new_clock.end());
+            batch.triggers = {reset};
+        }
+        out.see(batch);
+        take(old_clock);
+        if (!at_once) {
+            batch.events.clear();
+            batch.triggers = {reset};
+            out.see(batch);
+        }
+        from.reset();  // a time of the old clock
+        if (!at_once) {
+            batch.events = new_clock;
+            batch.triggers.clear();
+            out.see(batch);
+        }
+        take(new_clock);
+        ASSERT_GE(written.size(), 2U);
+        EXPECT_EQ(written.front().events, std::vector<Event>{old_clock.back()});
+        EXPECT_TRUE(written.front().triggers.empty());
+        EXPECT_EQ(written[1].triggers, std::vector<Trigger>{reset}) << at_once;
+        EXPECT_EQ(written.back().events, new_clock);
+    }
 }
 
 /// Holds every event back until it is flushed.
