@@ -111,6 +111,14 @@ EVENTIDE_AMX_INLINE void put_outputs(const HiddenRows& r, const PairOfSums& sums
                           _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
 }
 
+/// Of `count` pixels from `first` on: eight(p) gives the sums of eight of them, from the p-th on.
+template <typename Eight>
+EVENTIDE_AMX_INLINE void put_by_eights(const HiddenRows& r, const Eight& eight, int first,
+                                       int count) {
+    for (int p = 0; p < count; p += kRun)
+        put_outputs(r, joined(eight(p), eight(p + kRun / 2)), first + p, count - p);
+}
+
 /// Whether all of `n` numbers are one: pixels lie at the same place beside their samples where
 /// frames are as large as the sensor.
 EVENTIDE_AMX_INLINE bool all_same(const float* numbers, int n) {

@@ -103,11 +103,9 @@ EVENTIDE_AMX_INLINE PairOfSums multiply_eight(const HiddenRows& r, const LastLay
 }
 EVENTIDE_AMX void outputs_by_vectors(const HiddenRows& r, const LastLayer& last, int first,
                                      int count, const Room& room) {
-    for (int p = 0; p < count; p += kRun)
-        put_outputs(r,
-                    joined(multiply_eight(r, last, room.numbers + p),
-                           multiply_eight(r, last, room.numbers + p + kRun / 2)),
-                    first + p, count - p);
+    const auto eight = [&](int p)
+                           EVENTIDE_AMX { return multiply_eight(r, last, room.numbers + p); };
+    put_by_eights(r, eight, first, count);
 }
 
 EVENTIDE_AMX void start_tiles(const HiddenRows& r) {

@@ -100,20 +100,24 @@ TEST_F(CInterface, ASilenceIsRenderedWhereThatIsAllowed) {
     }
 }
 
+eventide_image whole_image(const std::vector<std::uint16_t>& pixels) {
+    return {.t = 15'000,
+            .exposure_begin = 12'000,
+            .exposure_end = 18'000,
+            .x = 0,
+            .y = 0,
+            .width = 64,
+            .height = 48,
+            .pixels = pixels.data()};
+}
+
 TEST_F(CInterface, FramesHaveNoSigmaAndNoImageCorrectsThemWhereThatIsNotWanted) {
     eventide_options options = repeatable_options();
     options.sigma = options.images = 0;
     ASSERT_EQ(open_with(options), EVENTIDE_OK);
     const eventide_event before{1000, 3, 4, 1}, after{60'000, 5, 6, 0};
     const std::vector<std::uint16_t> grey(64 * 48, 52'428);
-    const eventide_image image{.t = 15'000,
-                               .exposure_begin = 12'000,
-                               .exposure_end = 18'000,
-                               .x = 0,
-                               .y = 0,
-                               .width = 64,
-                               .height = 48,
-                               .pixels = grey.data()};
+    const eventide_image image = whole_image(grey);
     ASSERT_EQ(eventide_push(reconstructor_, &before, 1), EVENTIDE_OK);
     ASSERT_EQ(eventide_push_image(reconstructor_, &image), EVENTIDE_OK);
     ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);
@@ -130,14 +134,7 @@ TEST_F(CInterface, ImagesCorrectFrames) {
     open();
     const eventide_event before{1000, 3, 4, 1}, after{60'000, 5, 6, 0};
     const std::vector<std::uint16_t> grey(64 * 48, 52'428);
-    const eventide_image image{.t = 15'000,
-                               .exposure_begin = 12'000,
-                               .exposure_end = 18'000,
-                               .x = 0,
-                               .y = 0,
-                               .width = 64,
-                               .height = 48,
-                               .pixels = grey.data()};
+    const eventide_image image = whole_image(grey);
     ASSERT_EQ(eventide_push(reconstructor_, &before, 1), EVENTIDE_OK);
     ASSERT_EQ(eventide_push_image(reconstructor_, &image), EVENTIDE_OK) << eventide_error_message();
     ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);

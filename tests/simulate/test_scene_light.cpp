@@ -3,6 +3,7 @@
 #include "src/simulate/scene/textures.h"
 #include "src/simulate/sensor/sensor_settings.h"
 #include "src/simulate/simulated_stream.h"
+#include "tests/simulate/textures_of.h"
 
 #include <gtest/gtest.h>
 
@@ -13,13 +14,6 @@ namespace eventide {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 36;
-
-/// One grey: what is seen of it are the edges of things before it.
-std::shared_ptr<const TextureLibrary> one_grey() {
-    auto textures = std::make_shared<TextureLibrary>();
-    textures->add(GreyImage(16, 16));
-    return textures;
-}
 
 Scene make_scene(const SceneSettings& settings, std::uint64_t seed,
                  std::shared_ptr<const TextureLibrary> textures) {
@@ -70,7 +64,7 @@ TEST(SceneLight, EdgesAreAsSoftAtEverySizeOfAnImage) {
     SceneSettings settings = standing();
     settings.object_gain = {3, 3};
     settings.polygon_probability = 0;  // whose sharp corners end where their box does
-    const auto textures = one_grey();
+    const auto textures = test::one_grey();
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         settings.edge_softness_px = seed % 2 == 0 ? Range{6, 6} : Range{2, 2};
         const Scene scene = make_scene(settings, seed, textures);

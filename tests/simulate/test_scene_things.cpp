@@ -3,6 +3,7 @@
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/scene.h"
 #include "src/simulate/scene/textures.h"
+#include "tests/simulate/textures_of.h"
 
 #include <gtest/gtest.h>
 
@@ -13,13 +14,6 @@ namespace eventide {
 namespace {
 
 constexpr int kWidth = 96, kHeight = 32;
-
-/// Pictures of one grey: what is seen of them are the edges of things.
-std::shared_ptr<const TextureLibrary> one_grey() {
-    auto textures = std::make_shared<TextureLibrary>();
-    textures->add(GreyImage(16, 16));
-    return textures;
-}
 
 /// One bright disc that wanders before a still background.
 SceneSettings one_disc() {
@@ -37,7 +31,7 @@ SceneSettings one_disc() {
 }
 
 Scene make_scene(const SceneSettings& settings, std::uint64_t seed,
-                 std::shared_ptr<const TextureLibrary> textures = one_grey()) {
+                 std::shared_ptr<const TextureLibrary> textures = test::one_grey()) {
     Scene scene{settings, std::move(textures), kWidth, kHeight, Random{seed}};
     scene.prepare(20);
     return scene;
