@@ -108,7 +108,7 @@ void ImageFusion::expect(Expected& expected) noexcept {
 /// An image from before the first window is known at that window's begin, where the model shows
 /// `shown`, and followed through it.
 void ImageFusion::begin_with(const ReferenceImage& image, const Array2<float>& shown) noexcept {
-    Expected& begin = expected_[std::size_t((windows_ - 1) % 4)];
+    Expected& begin = expected_[slot_of(windows_ - 1)];
     fill(since_, 0);
     image_.take(image, shown, begin.correction, since_, trust_);
     pyramid_.observe(trust_, since_);
@@ -155,7 +155,7 @@ void ImageFusion::come_in(SensorTime t, Expected& now) const noexcept {
 }
 
 const ImageFusion::Expected& ImageFusion::at_end_of(std::uint64_t window) const {
-    return expected_[std::size_t(window % expected_.size())];
+    return expected_[slot_of(window)];
 }
 
 void ImageFusion::prepare(const RenderRequest& request) {

@@ -83,7 +83,10 @@ private:
                         const Array2<float>& shown) noexcept;
     void mix_ends(float at, float weight, const Expected& before, const Expected& after) noexcept;
     void row_before(const Expected& before, const Expected& after, float at, int y) noexcept;
-    Expected& newest() { return expected_[std::size_t(windows_ % 4)]; }
+    std::size_t slot_of(std::uint64_t window) const {
+        return std::size_t(window % expected_.size());
+    }
+    Expected& newest() { return expected_[slot_of(windows_)]; }
 
     int width_, height_;
     ResidualPyramid pyramid_;
