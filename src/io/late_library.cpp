@@ -14,11 +14,13 @@ namespace eventide {
 LateLibrary::LateLibrary(const char* soname, const char* needed_for, const char* package)
     : soname_{soname}, library_{dlopen(soname, RTLD_LAZY | RTLD_LOCAL)} {
     if (library_ == nullptr)
-        throw Error(ErrorKind::failed,
-                    std::string{needed_for} + ": " +
-                        (out_of_descriptors(1)
-                             ? system_words(EMFILE)
-                             : std::string{dlerror()} + "; Debian's package is " + package));
+        throw Error(
+            ErrorKind::failed,
+            std::string{needed_for} + ": " +
+                (out_of_descriptors(1) ? system_words(EMFILE)
+                                       // glibc keeps a message for each thread.
+                                       : std::string{dlerror()} +  // NOLINT(concurrency-mt-unsafe)
+                                             "; Debian's package is " + package));
 }
 
 void* LateLibrary::address_of(const char* name) const {

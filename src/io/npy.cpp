@@ -138,7 +138,8 @@ std::uint64_t NpyFile::rows() const {
 }
 
 std::uint64_t NpyFile::row_length() const {
-    return rows() == 0 ? 0 : header_.count / rows();
+    const std::uint64_t rows_there = rows();
+    return rows_there == 0 ? 0 : header_.count / rows_there;
 }
 
 std::vector<double> NpyFile::read(std::uint64_t first_row, std::uint64_t count) {

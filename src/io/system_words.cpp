@@ -9,7 +9,7 @@
 namespace eventide {
 
 std::string system_words(int error) {
-    const std::string words = std::generic_category().message(error);
+    std::string words = std::generic_category().message(error);
     switch (error) {
         case EMFILE:
             return words + " in this process; ulimit -n raises the limit";

@@ -2,6 +2,7 @@
 #include "src/io/hdf5/hdf5_library.h"
 
 #include "src/core/error.h"
+#include "src/io/late_library.h"
 
 #include <dlfcn.h>
 
@@ -11,31 +12,21 @@ namespace eventide {
 
 namespace {
 
-void* find(void* library, const char* name) {
-    void* found = dlsym(library, name);
-    if (found == nullptr)
-        throw Error(ErrorKind::failed, std::string{EVENTIDE_HDF5_LIBRARY} +
-                                           ": expected HDF5 1.10, found one without " + name);
-    return found;
-}
-
 /// Set by H5open(). Of a program that is linked with the library these variables may lie in the
 /// program.
-hid_t find_id(void* library, const char* name) {
-    const hid_t own = *static_cast<const hid_t*>(find(library, name));
+hid_t find_id(const LateLibrary& library, const char* name) {
+    const hid_t* own_id = nullptr;
+    library.find(own_id, name);
+    const hid_t own = *own_id;
     const void* elsewhere = own > 0 ? nullptr : dlsym(RTLD_DEFAULT, name);
     return elsewhere == nullptr ? own : *static_cast<const hid_t*>(elsewhere);
 }
 
 Hdf5Library load() {
-    void* library = dlopen(EVENTIDE_HDF5_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr)
-        throw Error(ErrorKind::failed,
-                    "HDF5 files need the HDF5 library: " + std::string{dlerror()} +
-                        "; Debian's package is libhdf5-103-1");
+    const LateLibrary library{EVENTIDE_HDF5_LIBRARY, "HDF5 files need the HDF5 library",
+                              "libhdf5-103-1"};
     Hdf5Library h5;
-#define EVENTIDE_HDF5_FIND(name) \
-    h5.name = reinterpret_cast<decltype(h5.name)>(find(library, #name));
+#define EVENTIDE_HDF5_FIND(name) library.find(h5.name, #name);
     EVENTIDE_HDF5_FUNCTIONS(EVENTIDE_HDF5_FIND)
 #undef EVENTIDE_HDF5_FIND
     if (h5.H5open() < 0)
