@@ -89,7 +89,8 @@ RenderProducts render_products(const ModelConfig& config, const FrameGeometry& g
     // Lookahead 0: that of k over two codes, and that of k - 1, which is there. 1: k over three
     // codes and k + 1 over two. 2: k + 1 over three; k is there.
     const int maps_of_codes[] = {2, 5, 3};
-    const double times = lookahead > 0 || config.live_edge == LiveEdge::fade ? 2 : 1;
+    const double times = lookahead > 0 ? 2 : 1;
+    const bool fades = lookahead == 0 && config.live_edge == LiveEdge::fade;
     double hidden = 2.0 * config.mlp.back();
     for (std::size_t i = 1; i < config.mlp.size(); ++i)
         hidden += double(config.mlp[i - 1]) * config.mlp[i];
@@ -97,7 +98,7 @@ RenderProducts render_products(const ModelConfig& config, const FrameGeometry& g
         samples_of(geometry.y, geometry.part_height, geometry.height, geometry.sensor_height,
                    config) *
         samples_of(geometry.x, geometry.part_width, geometry.width, geometry.sensor_width, config);
-    return {maps_of_codes[lookahead] * codes, times * pixels * hidden};
+    return {maps_of_codes[lookahead] * codes, fades ? pixels * hidden : 0, times * pixels * hidden};
 }
 
 }  // namespace eventide::bench

@@ -28,7 +28,8 @@ double encode_products(const ModelConfig& config, int height, int width);
 /// A frame inside an event window, at a lookahead that every window before had too.
 struct RenderProducts {
     double first = 0;  ///< the first layer at every latent sample, once per event window
-    double frame = 0;  ///< the layers behind it, at every sample around every pixel
+    double end = 0;    ///< what the window before shows at its end, where the live edge fades: once
+    double frame = 0;  ///< the layers behind the first, at every sample around every pixel
 };
 RenderProducts render_products(const ModelConfig& config, const FrameGeometry& geometry,
                                int lookahead);

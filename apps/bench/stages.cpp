@@ -117,7 +117,7 @@ StageRow measure_stages(const std::string& name, const Model& model,
     time_rendering(renderer, encoding, s, row);
     const RenderProducts products =
         render_products(model.config, frame_geometry_of(s), s.lookahead);
-    row.fresh.products = products.first + products.frame;
+    row.fresh.products = products.first + products.end + products.frame;
     row.again.products = products.frame;
     return row;
 }

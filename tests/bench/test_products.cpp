@@ -31,9 +31,11 @@ TEST(Products, OfTheDefault) {
                             + kHalf * 9 * 48 * 16 + kFull * 9 * 24 * 8          //
                             + kFull * 9 * 8 * 16;                               // out
     EXPECT_EQ(encode_products(shipped("default"), 180, 240), expected);
-    // Two codes of 16 in, 32 out; 32 x 32 and 2 x 32 behind, at two times (the live edge fades).
+    // Two codes of 16 in, 32 out; 32 x 32 and 2 x 32 behind, and as many for the end of the window
+    // before, with which frames begin.
     EXPECT_EQ(native("default", 0).first, kFull * 2 * 16 * 32);
-    EXPECT_EQ(native("default", 0).frame, kFull * 2 * (32 * 32 + 2 * 32));
+    EXPECT_EQ(native("default", 0).end, kFull * (32 * 32 + 2 * 32));
+    EXPECT_EQ(native("default", 0).frame, kFull * (32 * 32 + 2 * 32));
     EXPECT_EQ(native("default", 2).first, kFull * 3 * 16 * 32);
 }
 
@@ -47,10 +49,14 @@ TEST(Products, OfTheSmallOne) {
                             + kHalf * 9 * 24 * 8 + kFull * 9 * 16 * 8;
     EXPECT_EQ(encode_products(shipped("small"), 180, 240), expected);
     EXPECT_EQ(native("small", 0).first, kFull * 2 * 8 * 16);
-    EXPECT_EQ(native("small", 0).frame, kFull * 2 * (16 * 16 + 2 * 16));
+    EXPECT_EQ(native("small", 0).frame, kFull * (16 * 16 + 2 * 16));
+    EXPECT_EQ(native("small", 0).end, kFull * (16 * 16 + 2 * 16)) << "the live edge fades";
     EXPECT_EQ(native("small", 1).first, kFull * 5 * 8 * 16) << "this sample's and the next's";
     EXPECT_EQ(native("small", 1).frame, kFull * 2 * (16 * 16 + 2 * 16));
-    EXPECT_LT(expected + native("small", 0).first + native("small", 0).frame, 6000 * kFull);
+    EXPECT_EQ(native("small", 1).end, 0);
+    EXPECT_LT(
+        expected + native("small", 0).first + native("small", 0).end + native("small", 0).frame,
+        6000 * kFull);
 }
 
 TEST(Products, OfTheThesis) {

@@ -1,7 +1,6 @@
 // See fast_renderer.h; docs/model.md has the formulas.
 #include "src/model/render/fast_renderer.h"
 
-#include "src/kernels/vector_kernels.h"
 #include "src/nn/load_weights.h"
 
 #include <algorithm>
@@ -64,7 +63,10 @@ std::string FastRenderer::description() const {
 
 void FastRenderer::reset() noexcept {
     first_layer_.reset();
-    for (Size& size : sizes_) size.kept.reset();
+    for (Size& size : sizes_) {
+        size.kept.reset();
+        size.end.reset();
+    }
 }
 
 void FastRenderer::push(std::int64_t k, const LatentCodes& latent) noexcept {
@@ -86,11 +88,11 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
         latent_row_edges(latent_samples(geometry.sensor_height, config_.latent_stride)),
         latent_column_edges(latent_samples(geometry.sensor_width, config_.latent_stride)));
     size.kept.make_room(geometry, size.layout.tiles());
+    size.end.make_room(geometry, size.layout.tiles());
     spans_.reserve(std::size_t(geometry.part_height) * std::size_t(size.layout.columns.count()));
-    // Six rows of part_width numbers: mu, ln sigma and square, twice.
-    // What members have given together, and what one gives.
+    // Nine rows of part_width numbers: three for each of RowsOf.
     for (FloatBuffer& sums : row_sums_)
-        sums.resize(std::max(sums.size(), 6 * std::size_t(geometry.part_width)));
+        sums.resize(std::max(sums.size(), 9 * std::size_t(geometry.part_width)));
     size.geometry = geometry;
 }
 
@@ -112,7 +114,8 @@ FastRenderer::Job FastRenderer::job_of(const CodeChoice& codes, const FrameGeome
     // The thesis' network knows no stillness: its codes change for ever.
     const AxisSamples still_t =
         config_.encoder == EncoderKind::gated ? sample_still_time(t, codes.next[0], fades) : t;
-    return {geometry, rule, t, still_t, bring_sums(codes, t)};
+    const bool keeps_end = t.index < 0 && !needs_squares_ && sizes_[size_].end.is_kept();
+    return {geometry, rule, t, still_t, keeps_end, bring_sums(codes, t)};
 }
 
 void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
@@ -155,6 +158,13 @@ bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
     return is_still(row, column, stamp.k + kept.kind.read.oldest, codes.k + kept.kind.read.newest);
 }
 
+bool FastRenderer::note_end(std::size_t tile, std::int64_t k) noexcept {
+    WindowEnd& end = sizes_[size_].end;
+    const bool is_there = end.holds(tile, k);
+    end.note(tile, k);
+    return is_there;
+}
+
 /// Of a row of tiles with rows 10 to 41 and five tiles, of which o are out of date:
 ///
 ///     tiles     0    1    2    3    4
@@ -178,77 +188,21 @@ void FastRenderer::find_outdated(const CodeChoice& codes, const Job& job,
             if (is_kept) continue;
             stamp.fraction = fraction;
             if (first_row == last_row) continue;  // beside the part of the frame that is asked for
+            const bool begins_before = (shows_end ? job.still_t : job.t).weight[0] != 0;
+            const bool has_end = job.keeps_end && note_end(std::size_t(r * columns + c),
+                                                           codes.k - (begins_before ? 1 : 0));
             if (spans_.size() > begin && spans_.back().last == c &&
-                spans_.back().is_still == shows_end)
+                spans_.back().is_still == shows_end && spans_.back().has_end == has_end)
                 spans_.back().last = c + 1;
             else
-                spans_.push_back({first_row, c, c + 1, shows_end});
+                spans_.push_back({first_row, c, c + 1, shows_end, has_end});
         }
         // Rows below the first are cut as it is.
         const auto end = spans_.size();
         for (int row = first_row + 1; row < last_row; ++row)
             for (auto i = begin; i < end; ++i)
-                spans_.push_back({row, spans_[i].first, spans_[i].last, spans_[i].is_still});
-    }
-}
-
-void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
-    for (const Span& span : spans_)
-        pixels_rendered_ += std::uint64_t(layout().columns.begin[std::size_t(span.last)] -
-                                          layout().columns.begin[std::size_t(span.first)]);
-    for_each_tile(options_.parallel_for, int(spans_.size()), [&](int worker, int i) {
-        render_span(job, spans_[std::size_t(i)], target, std::size_t(worker));
-    });
-}
-
-/// Up to 8 members, added up in this order whichever span a pixel is in:
-///
-///     for time a, row b        base = dt_a slope_t + dy_b slope_y, weight w_a w_b
-///       for side 0, 1          left samples, then right ones: + dx slope_x, weight times w_x
-///
-///     mu = sum w mu_i,  ln sigma = sum w s_i  or  sigma^2 = sum w (sigma_i^2 + mu_i^2) - mu^2
-void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
-                               std::size_t worker) noexcept {
-    const AxisSamples& t = span.is_still ? job.still_t : job.t;
-    const int width = job.geometry.part_width;
-    const auto count = std::size_t(width);
-    const auto begin = std::size_t(layout().columns.begin[std::size_t(span.first)]),
-               end = std::size_t(layout().columns.begin[std::size_t(span.last)]);
-    const AxisSamples y =
-        sample_axis(job.geometry.y + span.row, job.geometry.height, job.geometry.sensor_height,
-                    config_.latent_stride, config_.blend);
-    float* scratch = scratch_[worker].data();
-    float* blended = row_sums_[worker].data();  // mu, ln sigma, sigma^2 + mu^2
-    for (std::size_t n = 0; n < 3; ++n) std::fill_n(blended + n * count + begin, end - begin, 0.0F);
-    float* base = scratch;
-    for (std::size_t n = 0; n < 4; ++n) {
-        const std::size_t a = n / 2, b = n % 2;
-        const double weight = t.weight[a] * y.weight[b];
-        if (weight == 0) continue;
-        for (std::size_t o = 0; o < std::size_t(first_); ++o)
-            base[o] = slope_[0][o] * float(t.offset[a]) + slope_[2][o] * float(y.offset[b]);
-        const int sample = y.index + int(b);
-        const Array3<float>& sums = job.sums[a]->values;
-        // The row of samples below is the next that rows of pixels further down read.
-        const std::ptrdiff_t ahead =
-            sample + 1 < sums.height() ? std::ptrdiff_t(sums.width()) * sums.channels() : 0;
-        for (std::size_t side = 0; side < 2; ++side)
-            evaluate({sums.pixel(sample, 0).data(), ahead, base, float(weight), side}, span,
-                     blended, width, scratch + first_);
-    }
-    const std::size_t row = std::size_t(span.row) * count;
-    std::copy(blended + begin, blended + end, target.intensity + row + begin);
-    if (target.sigma == nullptr) return;
-    float* sigma = target.sigma + row;
-    if (job.rule == SigmaRule::log_blend) {
-        numbers_.kernels().scaled_exp(blended + count + begin, config_.sigma_scale, sigma + begin,
-                                      end - begin);
-        return;
-    }
-    // Rounding may leave a variance below 0.
-    for (std::size_t i = begin; i < end; ++i) {
-        const float mu = blended[i], square = blended[2 * count + i];
-        sigma[i] = config_.sigma_scale * std::sqrt(std::max(square - mu * mu, 0.0F));
+                spans_.push_back(
+                    {row, spans_[i].first, spans_[i].last, spans_[i].is_still, spans_[i].has_end});
     }
 }
 

@@ -6,6 +6,7 @@
 #include "src/model/render/first_layer_cache.h"
 #include "src/model/render/frame_layout.h"
 #include "src/model/render/kept_frames.h"
+#include "src/model/render/window_end.h"
 
 #include <array>
 #include <vector>
@@ -34,6 +35,7 @@ private:
     struct Span {
         int row, first, last;
         bool is_still;  ///< shown at the window's end, whatever the frame's time (still_pixels.h)
+        bool has_end;   ///< the window's end it begins with is there (window_end.h)
     };
     /// What the two maps of a frame are written to.
     struct Target {
@@ -46,6 +48,7 @@ private:
         const FrameGeometry& geometry;
         SigmaRule rule;
         AxisSamples t, still_t;  ///< of its time, and of the window's end
+        bool keeps_end;          ///< what windows show at their ends is kept
         std::array<const FirstLayerCache::WindowSums*, 2> sums;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
@@ -64,6 +67,7 @@ private:
         FrameGeometry geometry;
         FrameLayout layout;
         KeptFrames kept;
+        WindowEnd end;
     };
 
     Job job_of(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule) noexcept;
@@ -75,6 +79,9 @@ private:
     /// Fills spans_ with what of the kept frame is out of date, and stamps it.
     void find_outdated(const CodeChoice& codes, const Job& job, KeptFrame& kept) noexcept;
     bool is_still(int row, int column, std::int64_t from, std::int64_t to) const noexcept;
+    /// Whether the end of an event window that a tile's pixels begin with is there; from now on it
+    /// is.
+    bool note_end(std::size_t tile, std::int64_t k) noexcept;
     /// `fraction` of the window that the tile shows.
     bool is_up_to_date(const KeptFrame& kept, int row, int column, const CodeChoice& codes,
                        double fraction) const noexcept;
@@ -82,17 +89,29 @@ private:
     void render_spans(const Job& job, const Target& target) noexcept;
     void render_span(const Job& job, const Span& span, const Target& target,
                      std::size_t worker) noexcept;
-    /// Adds a member's part to the three sums of every pixel of the span.
-    void evaluate(const Member& member, const Span& span, float* blended, int width,
-                  float* scratch) const noexcept;
-    /// What a member gives each pixel of a span, not yet added to what others do.
-    struct Outputs {
-        // [pixels of the span that have a sample on this side], without gaps.
-        float *mu, *log_sigma, *square;  // square: null where not needed
+    /// Three numbers of each pixel: of a row of the frame, or without gaps of the pixels of a span
+    /// that have a sample on one side.
+    struct Rows {
+        float *mu, *log_sigma, *square;  // sigma^2 + mu^2; null where not needed
     };
-    void run_blocks(const OffsetRows& all, const Outputs& out, float* scratch) const noexcept;
-    void add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
-             float* blended, int width) const noexcept;
+    enum class RowsOf : std::uint8_t { frame, member, end };
+    Rows rows(std::size_t worker, RowsOf which) noexcept;
+    void clear(const Rows& rows, const Span& span) const noexcept;
+    /// The frame's rows become what an event window shows at its end, times the weight of that
+    /// sample in time.
+    void begin_with_end(const Job& job, const Span& span, std::size_t sample,
+                        std::size_t worker) noexcept;
+    /// Adds what the members of a sample in time give, with its weight or another.
+    void add_sample(const Job& job, const Span& span, std::size_t sample, double weight,
+                    const Rows& to, std::size_t worker) noexcept;
+    void put(const Job& job, const Span& span, const Rows& blended,
+             const Target& target) const noexcept;
+    /// Adds a member's part to every pixel of the span; `outputs` has room for it alone.
+    void evaluate(const Member& member, const Span& span, const Rows& to, const Rows& outputs,
+                  float* scratch) const noexcept;
+    void run_blocks(const OffsetRows& all, const Rows& out, float* scratch) const noexcept;
+    void add(const Member& member, std::size_t begin, int pixels, const Rows& outputs,
+             const Rows& to) const noexcept;
     /// The hidden layers behind the first; `room` holds 2 kBlock widest_ numbers. Returns where the
     /// result is, float32.
     const float* run_layers(const float* activations, int pixels, float* room) const noexcept;

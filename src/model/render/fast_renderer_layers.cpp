@@ -6,19 +6,17 @@
 
 namespace eventide {
 
-/// What a member gives goes to the second half of row_sums_, pixel after pixel of its side's list,
-/// and from there to the pixels of the row:
+/// What a member gives goes to `outputs`, pixel after pixel of its side's list, and from there to
+/// the pixels of the row:
 ///
-///     span of pixels 0 .. 6, side 1     part       j = 0   1   2
-///                                       blended        1   3   5     (FrameColumns::pixel)
-void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
-                            float* scratch) const noexcept {
+///     span of pixels 0 .. 6, side 1     outputs    j = 0   1   2
+///                                       to             1   3   5     (FrameColumns::pixel)
+void FastRenderer::evaluate(const Member& member, const Span& span, const Rows& to,
+                            const Rows& outputs, float* scratch) const noexcept {
     const FrameColumns& columns = layout().pixels;
     const std::size_t begin = columns.tile[member.side][std::size_t(span.first)],
                       pixels = columns.tile[member.side][std::size_t(span.last)] - begin;
     if (pixels == 0) return;
-    float* mu = blended + 3 * width;
-    const Outputs out{mu, mu + width, needs_squares_ ? mu + 2 * width : nullptr};
     const OffsetRows offset{.sums = member.sums,
                             .ahead = member.ahead,
                             .column = columns.column[member.side].data() + begin,
@@ -31,10 +29,10 @@ void FastRenderer::evaluate(const Member& member, const Span& span, float* blend
     if (layers_.size() != 1 || !layers_[0].run(HiddenRows{.offset = offset,
                                                           .last_weight = last_weight_.data(),
                                                           .last_bias = last_bias_.data(),
-                                                          .mu = out.mu,
-                                                          .log_sigma = out.log_sigma}))
-        run_blocks(offset, out, scratch);
-    add(member, begin, int(pixels), out, blended, width);
+                                                          .mu = outputs.mu,
+                                                          .log_sigma = outputs.log_sigma}))
+        run_blocks(offset, outputs, scratch);
+    add(member, begin, int(pixels), outputs, to);
 }
 
 /// So many pixels at a time that their activations stay in a core's first cache from layer to
@@ -46,7 +44,7 @@ void FastRenderer::evaluate(const Member& member, const Span& span, float* blend
 ///     room, 2nd    widest_              third, fifth ...         fourth, sixth ...
 ///
 /// kBlock pixels each; run_layers() swaps the two halves of `room`.
-void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
+void FastRenderer::run_blocks(const OffsetRows& all, const Rows& out,
                               float* scratch) const noexcept {
     float* activations = scratch;
     float* room = activations + kBlock * widest_;
@@ -68,8 +66,8 @@ void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
     }
 }
 
-void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
-                       float* blended, int width) const noexcept {
+void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Rows& outputs,
+                       const Rows& to) const noexcept {
     const FrameColumns& columns = layout().pixels;
     numbers_.kernels().weigh_rows({.mu = outputs.mu,
                                    .log_sigma = outputs.log_sigma,
@@ -80,18 +78,19 @@ void FastRenderer::add(const Member& member, std::size_t begin, int pixels, cons
                                    .most = config_.log_sigma_max,
                                    .pixels = pixels});
     const int* pixel = columns.pixel[member.side].data() + begin;
-    const float* const parts[] = {outputs.mu, outputs.log_sigma, outputs.square};
     // Where each pixel has a sample of its own, as in frames of the sensor's size, all follow each
     // other.
     const bool is_dense = pixel[pixels - 1] - pixel[0] == pixels - 1;
-    for (const float* part : parts) {
-        float* to = blended + pixel[0];
-        if (part != nullptr && is_dense)
-            for (int j = 0; j < pixels; ++j) to[j] += part[j];
-        else if (part != nullptr)
-            for (int j = 0; j < pixels; ++j) blended[pixel[j]] += part[j];
-        blended += width;
-    }
+    const auto add_row = [&](const float* row, float* to_row) {
+        float* first = to_row + pixel[0];
+        if (is_dense)
+            for (int j = 0; j < pixels; ++j) first[j] += row[j];
+        else
+            for (int j = 0; j < pixels; ++j) to_row[pixel[j]] += row[j];
+    };
+    add_row(outputs.mu, to.mu);
+    add_row(outputs.log_sigma, to.log_sigma);
+    if (outputs.square != nullptr) add_row(outputs.square, to.square);
 }
 
 /// All but the last layer's result as layers read it, the last's in float32.
