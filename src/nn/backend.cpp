@@ -75,6 +75,7 @@ Backend measure(Instructions most, bool onednn_allowed) {
     if (onednn_allowed && onednn_has_amx() && most == Instructions::best)
         candidates.push_back({{f32.f32, bf16.bf16, true}, 1.2});
     std::vector<LayerTrial> trials;
+    trials.reserve(candidates.size());
     for (const Candidate& candidate : candidates) trials.emplace_back(candidate.backend);
     for (int round = 0; round < kRounds; ++round)
         for (LayerTrial& trial : trials) trial.run();
