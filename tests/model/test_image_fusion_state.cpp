@@ -33,6 +33,17 @@ TEST_F(ImageFusionTest, EventsOfWhatWasFollowedCountATenth) {
         << "halfway between two ends";
 }
 
+/// Of a stream whose first image came when windows had passed that nobody remembers.
+TEST_F(ImageFusionTest, BeforeTheFirstWindowEventsCameAsOftenAsSince) {
+    fusion_.begin_within_stream();
+    now_ms_ = 100;
+    advance(120, .6F);
+    ASSERT_TRUE(correct(ramp(), 60));
+    EXPECT_NEAR(shown(120).sigma(9, 9), sigma_after(.18), 1e-4);
+    advance(140, .6F);
+    EXPECT_NEAR(shown(140).sigma(9, 9), sigma_after(.24), 1e-4);
+}
+
 TEST_F(ImageFusionTest, EventsOfAnExposureCountWhole) {
     for (int i = 1; i <= 10; ++i) advance(20 * i, .6F);
     ReferenceImage image = image_of(ramp(), at_ms(200));
@@ -92,10 +103,7 @@ TEST_F(ImageFusionTest, WhereNoImageHasBeenTheModelAloneCounts) {
     advance(40);
     ASSERT_TRUE(fusion_.correct(part, grey(.4F, at_ms(40))));
     advance(60, .01F, .5F);
-    Frame frame = grey(.5F, at_ms(60));
-    fusion_.prepare({});
-    fusion_.apply({}, constant(.5F), frame);
-    EXPECT_NEAR(frame.intensity(25, 40), .5, .01);
+    EXPECT_NEAR(shown(60, {}, .5F).intensity(25, 40), .5, .01);
 }
 
 TEST_F(ImageFusionTest, FramesThatDifferInOneNumberAreEachTheirOwn) {
