@@ -44,6 +44,22 @@ TEST_F(ImageFusionTest, BeforeTheFirstWindowEventsCameAsOftenAsSince) {
     EXPECT_NEAR(shown(140).sigma(9, 9), sigma_after(.24), 1e-4);
 }
 
+TEST_F(ImageFusionTest, WhatIsLeftOfAnImageFadesEvenlyThroughAWindow) {
+    Array2<float> board = constant(.4F);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) board(y, x) += (x + y) % 2 == 0 ? .2F : -.2F;
+    advance(20);
+    ASSERT_TRUE(correct(board, 20));
+    const auto detail = [this](double ms) { return shown(ms).intensity(10, 10) - .4F; };
+    advance(40, .6F);
+    const float at_begin = detail(20.001), at_end = detail(40);
+    EXPECT_NEAR(at_begin, .2, 1e-3) << "as at the end of the window before";
+    EXPECT_NEAR(at_end, .2 * std::exp(-2 * .06), 1e-3);
+    EXPECT_NEAR(detail(30), (at_begin + at_end) / 2, 1e-4);
+    advance(60, .6F);
+    EXPECT_NEAR(detail(40.001), at_end, 1e-4);
+}
+
 TEST_F(ImageFusionTest, EventsOfAnExposureCountWhole) {
     for (int i = 1; i <= 10; ++i) advance(20 * i, .6F);
     ReferenceImage image = image_of(ramp(), at_ms(200));

@@ -246,7 +246,7 @@ void ImageFusion::correct_within(std::uint64_t window, float at, float weight,
     const Expected &after = at_end_of(window), &before = at_end_of(window - 1);
     if (window != windows_ || !after.followed) return mix_ends(at, weight, before, after);
     image_.residual(shown, after.through, 1 - at, residual_within_);
-    pyramid_.correct(residual_within_, correction_);
+    pyramid_.correct(residual_within_, correction_, at);
     if (!after.new_image) return;
     // The image before is gone, but not what it said at the end of the window before.
     for (int y = 0; y < height_; ++y) {
