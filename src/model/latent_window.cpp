@@ -41,4 +41,10 @@ Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
     return Readiness::ready;
 }
 
+SensorTime LatentWindow::oldest() const noexcept {
+    if (newest_ == 0) return SensorTime::min();
+    const std::int64_t k = std::max<std::int64_t>(1, newest_ - kLatentsKept + 3);
+    return stamp(k).window.begin + SensorDuration{k > 1 ? 1 : 0};
+}
+
 }  // namespace eventide

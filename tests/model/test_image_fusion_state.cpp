@@ -68,6 +68,13 @@ TEST_F(ImageFusionTest, EventsOfAnExposureCountWhole) {
     EXPECT_NEAR(shown(200).sigma(9, 9), sigma_after(.6), 1e-4);
 }
 
+/// Of an image so late that the model does not know any more what it showed.
+TEST_F(ImageFusionTest, EventsFromBeforeWhatIsStillShownCountWhole) {
+    for (int i = 1; i <= 10; ++i) advance(20 * i, .6F);
+    ASSERT_TRUE(fusion_.correct(image_of(ramp(), at_ms(120)), grey(.4F, at_ms(160))));
+    EXPECT_NEAR(shown(200).sigma(9, 9), sigma_after(1.2 + .12), 1e-4);
+}
+
 TEST_F(ImageFusionTest, EventsOfWhatCouldNotBeFollowedCountWhole) {
     const auto advance_unknown = [&](double end_ms) {
         fusion_.advance({at_ms(now_ms_), at_ms(end_ms)}, constant(.6F), nullptr);

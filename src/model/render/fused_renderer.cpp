@@ -141,10 +141,9 @@ void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexc
         return;
     }
     newest_used_ = image.t;
-    // What the model showed when the image was taken; where that is no longer known, at the
-    // window's begin.
-    SensorTime t = image.t;
-    if (!renderer_.ready(t, lookahead_)) t = window.begin + SensorDuration{1};
+    // What the model showed when the image was taken; where that is no longer known, as soon after
+    // that as it is.
+    SensorTime t = std::max(image.t, renderer_.oldest());
     if (!renderer_.ready(t, lookahead_)) t = window.end;
     show(t);
     ++(fusion_->correct(image, shown_) ? used_ : dropped_);

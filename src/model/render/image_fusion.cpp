@@ -142,19 +142,20 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     fill(since_, 0);
     past_.add_since(std::clamp(image.exposure_begin, image.t - kLongestExposure, image.t), 1,
                     since_);
-    past_.add_since(image.t, knows_shown_ ? kFollowed - 1 : 0, since_);
+    // What happened before that which is shown was not followed.
+    past_.add_since(rendered.t, knows_shown_ ? kFollowed - 1 : 0, since_);
     pyramid_.observe(trust_, since_);
     if (!knows_shown_) copy(rendered.intensity, shown_);
     image_.follow(shown_);
-    if (knows_shown_) spread_motion(image.t, now);
+    if (knows_shown_) spread_motion(rendered.t, now);
     come_in(image.t, now);
     expect_at_end();
     return true;
 }
 
-/// Since t, when an image was taken, things are taken to have moved evenly, so that a frame at t
-/// shows the image as it is. Of a short time that would say little of the window; the first image
-/// has to do so all the same.
+/// Since t, when the scene was as an image has it, things are taken to have moved evenly, so that a
+/// frame at t shows the image as it is. Of a short time that would say little of the window; the
+/// first image has to do so all the same.
 void ImageFusion::spread_motion(SensorTime t, Expected& now) noexcept {
     const auto width = double(now.window.width().count());
     const auto since = double((now.window.end - t).count()), shortest = double(kFastest) * width;

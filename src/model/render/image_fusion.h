@@ -50,9 +50,10 @@ public:
     /// at its end, at the sensor's size; where that is not known, nothing is taken to have moved.
     void advance(const Window& window, const Array2<float>& events, const Frame* at_end) noexcept;
 
-    /// An image of the sensor, and what the model shows at that time (or as near as it can), at the
-    /// sensor's size. Of the part that the image covers. Images of times after the newest window's
-    /// end, and those older than kRemembered before it, tell nothing; false for these.
+    /// An image of the sensor, and what the model shows at that time (or as soon after it as it
+    /// can), at the sensor's size. Of the part that the image covers. Images of times after the
+    /// newest window's end, and those older than kRemembered before it, tell nothing; false for
+    /// these.
     bool correct(const ReferenceImage& image, const Frame& rendered) noexcept;
 
     /// To a frame as it was rendered for `request`, at frame.t within one of the last three
