@@ -36,6 +36,9 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
 TEST(FusedRenderer, AnImageFromBeforeTheFirstWindowIsTheFirstFrame) {
     for (const int lookahead : {0, 1, 2}) {
         Chain chain{lookahead};
+        chain.encode_next(Kind::silence);
+        chain.push(0);
+        chain.begin_anew();  // windows of another clock came before
         SensorTime first{};
         for (int i = 0; i < 3; ++i) {
             const Window window = chain.encode_next(Kind::silence);

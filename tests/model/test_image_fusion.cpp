@@ -319,6 +319,33 @@ TEST_F(MovingScene, AtItsOwnTimeAnImageIsShownHoweverThingsMovedBefore) {
     EXPECT_LT(error_at(80), .1 * error_alone(80));
 }
 
+/// The motion since then is too little to be measured.
+TEST_F(MovingScene, AnImageJustBeforeAWindowsEndLeavesItsMotionAsItWas) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    advance(80);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(79), at_ms(79)), faint(79)));
+    for (const int ms : {50, 60, 70, 79}) EXPECT_LT(error_at(ms), .1 * error_alone(ms)) << ms;
+}
+
+TEST_F(MovingScene, WhatWasOutsideOfTheSensorIsNotTakenForItsEdge) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    for (int ms = 40; ms <= 120; ms += 20) advance(ms);  // 10 px to the right
+    const Frame alone = faint(120);
+    Frame frame = alone;
+    fusion_.prepare({});
+    fusion_.apply({}, alone.intensity, frame);
+    const Array2<float> truth = scene(120);
+    double squares = 0, squares_alone = 0;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < 7; ++x) {
+            squares += std::pow(frame.intensity(y, x) - truth(y, x), 2);
+            squares_alone += std::pow(alone.intensity(y, x) - truth(y, x), 2);
+        }
+    EXPECT_LT(squares, 1.5 * squares_alone) << "coarse structure around goes on";
+}
+
 TEST_F(MovingScene, TheFirstImageIsFollowedThroughItsWindow) {
     advance(80);
     ASSERT_TRUE(fusion_.correct(image_of(scene(0), at_ms(0)), faint(0)));

@@ -58,6 +58,10 @@ TEST_F(ImageFusionTest, WhatIsLeftOfAnImageFadesEvenlyThroughAWindow) {
     EXPECT_NEAR(detail(30), (at_begin + at_end) / 2, 1e-4);
     advance(60, .6F);
     EXPECT_NEAR(detail(40.001), at_end, 1e-4);
+    for (int ms = 80; ms <= 2000; ms += 20) advance(ms, .6F);
+    advance(2020);
+    ASSERT_TRUE(correct(board, 2010));
+    EXPECT_NEAR(detail(2010), .2, 1e-3) << "of a new image nothing has faded";
 }
 
 TEST_F(ImageFusionTest, EventsOfAnExposureCountWhole) {
