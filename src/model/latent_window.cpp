@@ -41,4 +41,11 @@ Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
     return Readiness::ready;
 }
 
+SensorTime LatentWindow::oldest() const noexcept {
+    if (newest_ == 0) return SensorTime::min();
+    // Where nothing was dropped yet, the first; else the oldest k whose z_{k-2} is still kept.
+    const std::int64_t k = newest_ <= kLatentsKept ? 1 : newest_ - kLatentsKept + 3;
+    return stamp(k).window.begin + SensorDuration{k > 1 ? 1 : 0};
+}
+
 }  // namespace eventide

@@ -48,6 +48,8 @@ public:
     /// after the newest, or where there is none yet.
     FramePosition locate(SensorTime t) const noexcept;
     Readiness readiness(SensorTime t, int lookahead) const noexcept;
+    /// The earliest time that is not gone; any where there is no event window yet.
+    SensorTime oldest() const noexcept;
 
 private:
     // That of k in slot(k), for newest_ - 4 <= k <= newest_; k counts from 1 since reset().

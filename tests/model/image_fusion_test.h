@@ -16,15 +16,15 @@ protected:
         fusion_.advance({at_ms(now_ms_), at_ms(end_ms)}, constant(events), &at_end);
         now_ms_ = end_ms;
     }
-    /// The model's grey of .4, corrected.
-    Frame shown(double ms, const RenderRequest& request = {}) {
+    /// The model's grey, .4 unless said otherwise, corrected.
+    Frame shown(double ms, const RenderRequest& request = {}, float value = .4F) {
         const int width = request.width > 0 ? request.width : kWidth;
         const int height = request.height > 0 ? request.height : kHeight;
         Frame frame =
-            grey(.4F, at_ms(ms), request.region.height > 0 ? request.region.height : height,
+            grey(value, at_ms(ms), request.region.height > 0 ? request.region.height : height,
                  request.region.width > 0 ? request.region.width : width);
         fusion_.prepare(request);
-        fusion_.apply(request, constant(.4F), frame);
+        fusion_.apply(request, constant(value), frame);
         return frame;
     }
     bool correct(const Array2<float>& seen, double ms) {

@@ -36,6 +36,9 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
 TEST(FusedRenderer, AnImageFromBeforeTheFirstWindowIsTheFirstFrame) {
     for (const int lookahead : {0, 1, 2}) {
         Chain chain{lookahead};
+        chain.encode_next(Kind::silence);
+        chain.push(0);
+        chain.begin_anew();  // windows of another clock came before
         SensorTime first{};
         for (int i = 0; i < 3; ++i) {
             const Window window = chain.encode_next(Kind::silence);
@@ -48,6 +51,28 @@ TEST(FusedRenderer, AnImageFromBeforeTheFirstWindowIsTheFirstFrame) {
         const Frame frame = chain.shown(first);
         for (std::size_t i = 0; i < frame.intensity.values().size(); ++i)
             ASSERT_NEAR(frame.intensity.values()[i], ramp().values()[i], 5e-3) << lookahead;
+    }
+}
+
+/// The model still remembers its window, or does not any more.
+TEST(FusedRenderer, AFirstImageThatIsLateDoesNotMakeFramesJump) {
+    for (const int windows_late : {1, 4}) {
+        Chain chain{0};
+        std::vector<Window> windows;
+        for (int i = 0; i < 8; ++i) {
+            windows.push_back(chain.encode_next(i < 3 ? Kind::patch : Kind::silence));
+            if (i == 7)
+                chain.fused.give(image_of(ramp(), windows[std::size_t(7 - windows_late)].end));
+            chain.push(i < 3 ? 1.F : 0.F);
+        }
+        EXPECT_EQ(chain.fused.used(), 1U);
+        const RenderRequest at_begin{.t = windows[7].begin + SensorDuration{1}};
+        Frame alone = chain.renderer.make_output(at_begin);
+        chain.renderer.render(at_begin, alone);
+        const Frame found = chain.shown(at_begin);
+        for (std::size_t i = 0; i < found.intensity.values().size(); ++i)
+            ASSERT_NEAR(found.intensity.values()[i], alone.intensity.values()[i], 1e-3)
+                << windows_late << " windows late";
     }
 }
 

@@ -87,18 +87,16 @@ TEST_F(ImageFusionTest, TheFirstImageIsNotHeldUpByAnotherOneInItsWindow) {
     EXPECT_NEAR(shown(112.5).intensity(9, 9), .6F, 1e-4) << "others come in over some time";
 }
 
-/// Of a stream whose first image came when windows had passed.
+/// Of a stream whose first image came when windows had passed that nobody remembers.
 TEST_F(ImageFusionTest, AnImageFromBeforeAWindowIsNotTakenForOneOfItsBegin) {
+    fusion_.begin_within_stream();
     now_ms_ = 100;
-    advance(150, 1);
-    ASSERT_TRUE(correct(constant(.8F), 90));
-    EXPECT_GT(shown(100.001).sigma(9, 9), .05F) << "events between may have moved it";
-    fusion_.reset();
-    now_ms_ = 50;
-    advance(100, 1);
-    advance(150, 1);
-    ASSERT_TRUE(fusion_.correct(image_of(constant(.8F), at_ms(50)), grey(.4F, at_ms(100))));
-    EXPECT_GT(shown(100.001).sigma(9, 9), .05F) << "nor where no more than the begin is known";
+    EXPECT_EQ(shown(95).intensity(9, 9), .4F) << "before the first window that is known";
+    advance(120, .5F);
+    EXPECT_EQ(shown(95).intensity(9, 9), .4F);
+    ASSERT_TRUE(fusion_.correct(image_of(constant(.8F), at_ms(60)), grey(.4F, at_ms(100))));
+    EXPECT_NEAR(shown(100.001).intensity(9, 9), .4F, 1e-3F) << "no jump";
+    EXPECT_GT(shown(120).sigma(9, 9), .04F) << "events between may have moved it";
 }
 
 TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSameFrame) {
@@ -139,7 +137,7 @@ TEST_F(ImageFusionTest, ASaturatedImageSaysAtLeastSoBrightAndABlackOneAtMost) {
         now_ms_ = 0;
         advance(50, 0, model);
         EXPECT_TRUE(fusion_.correct(image_of(constant(seen), at_ms(50)), grey(model, at_ms(50))));
-        return shown(50).intensity(5, 5) - .4F;
+        return shown(50, {}, model).intensity(5, 5) - model;
     };
     EXPECT_NEAR(added(1.2F, 1), 0, 1e-5F) << "1.2 may be true";
     EXPECT_NEAR(added(.4F, 1), .6F, 1e-3F) << ".4 can't";
@@ -295,6 +293,57 @@ TEST_F(MovingScene, AnImageTakenWithinAWindowIsFollowedToItsEnd) {
     advance(80);
     ASSERT_TRUE(fusion_.correct(image_of(scene(40), at_ms(40)), faint(40)));
     EXPECT_LT(error_at(80), .25 * error_alone(80));
+}
+
+TEST_F(MovingScene, AFirstImageTakenWithinAWindowCountsFromItsTimeOn) {
+    for (const bool windows_before : {false, true}) {
+        fusion_.reset();
+        now_ms_ = 0;
+        if (windows_before) advance(20);
+        advance(80);
+        ASSERT_TRUE(fusion_.correct(image_of(scene(40), at_ms(40)), faint(40)));
+        for (const int ms : {40, 50, 60, 70, 80})
+            EXPECT_LT(error_at(ms), .25 * error_alone(ms)) << ms;
+        advance(120);
+        for (const int ms : {50, 60, 70}) EXPECT_LT(error_at(ms), .35 * error_alone(ms)) << ms;
+    }
+}
+
+TEST_F(MovingScene, AtItsOwnTimeAnImageIsShownHoweverThingsMovedBefore) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    // 6 px until 80, where the scene stops.
+    const Frame at_end = faint(80);
+    fusion_.advance({at_ms(20), at_ms(140)}, constant(.5F, kSide, kSide), &at_end);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(80), at_ms(80)), faint(80)));
+    EXPECT_LT(error_at(80), .1 * error_alone(80));
+}
+
+/// The motion since then is too little to be measured.
+TEST_F(MovingScene, AnImageJustBeforeAWindowsEndLeavesItsMotionAsItWas) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    advance(80);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(79), at_ms(79)), faint(79)));
+    for (const int ms : {50, 60, 70, 79}) EXPECT_LT(error_at(ms), .1 * error_alone(ms)) << ms;
+}
+
+TEST_F(MovingScene, WhatWasOutsideOfTheSensorIsNotTakenForItsEdge) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    for (int ms = 40; ms <= 120; ms += 20) advance(ms);  // 10 px to the right
+    const Frame alone = faint(120);
+    Frame frame = alone;
+    fusion_.prepare({});
+    fusion_.apply({}, alone.intensity, frame);
+    const Array2<float> truth = scene(120);
+    double squares = 0, squares_alone = 0;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < 7; ++x) {
+            squares += std::pow(frame.intensity(y, x) - truth(y, x), 2);
+            squares_alone += std::pow(alone.intensity(y, x) - truth(y, x), 2);
+        }
+    EXPECT_LT(squares, 1.5 * squares_alone) << "coarse structure around goes on";
 }
 
 TEST_F(MovingScene, TheFirstImageIsFollowedThroughItsWindow) {

@@ -33,12 +33,50 @@ TEST_F(ImageFusionTest, EventsOfWhatWasFollowedCountATenth) {
         << "halfway between two ends";
 }
 
+/// Of a stream whose first image came when windows had passed that nobody remembers.
+TEST_F(ImageFusionTest, BeforeTheFirstWindowEventsCameAsOftenAsSince) {
+    fusion_.begin_within_stream();
+    now_ms_ = 100;
+    advance(120, .6F);
+    ASSERT_TRUE(correct(ramp(), 60));
+    EXPECT_NEAR(shown(120).sigma(9, 9), sigma_after(.18), 1e-4);
+    advance(140, .6F);
+    EXPECT_NEAR(shown(140).sigma(9, 9), sigma_after(.24), 1e-4);
+}
+
+TEST_F(ImageFusionTest, WhatIsLeftOfAnImageFadesEvenlyThroughAWindow) {
+    Array2<float> board = constant(.4F);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) board(y, x) += (x + y) % 2 == 0 ? .2F : -.2F;
+    advance(20);
+    ASSERT_TRUE(correct(board, 20));
+    const auto detail = [this](double ms) { return shown(ms).intensity(10, 10) - .4F; };
+    advance(40, .6F);
+    const float at_begin = detail(20.001), at_end = detail(40);
+    EXPECT_NEAR(at_begin, .2, 1e-3) << "as at the end of the window before";
+    EXPECT_NEAR(at_end, .2 * std::exp(-2 * .06), 1e-3);
+    EXPECT_NEAR(detail(30), (at_begin + at_end) / 2, 1e-4);
+    advance(60, .6F);
+    EXPECT_NEAR(detail(40.001), at_end, 1e-4);
+    for (int ms = 80; ms <= 2000; ms += 20) advance(ms, .6F);
+    advance(2020);
+    ASSERT_TRUE(correct(board, 2010));
+    EXPECT_NEAR(detail(2010), .2, 1e-3) << "of a new image nothing has faded";
+}
+
 TEST_F(ImageFusionTest, EventsOfAnExposureCountWhole) {
     for (int i = 1; i <= 10; ++i) advance(20 * i, .6F);
     ReferenceImage image = image_of(ramp(), at_ms(200));
     image.exposure_begin = at_ms(180);
     ASSERT_TRUE(fusion_.correct(image, grey(.4F, at_ms(200))));
     EXPECT_NEAR(shown(200).sigma(9, 9), sigma_after(.6), 1e-4);
+}
+
+/// Of an image so late that the model does not know any more what it showed.
+TEST_F(ImageFusionTest, EventsFromBeforeWhatIsStillShownCountWhole) {
+    for (int i = 1; i <= 10; ++i) advance(20 * i, .6F);
+    ASSERT_TRUE(fusion_.correct(image_of(ramp(), at_ms(120)), grey(.4F, at_ms(160))));
+    EXPECT_NEAR(shown(200).sigma(9, 9), sigma_after(1.2 + .12), 1e-4);
 }
 
 TEST_F(ImageFusionTest, EventsOfWhatCouldNotBeFollowedCountWhole) {
@@ -92,10 +130,7 @@ TEST_F(ImageFusionTest, WhereNoImageHasBeenTheModelAloneCounts) {
     advance(40);
     ASSERT_TRUE(fusion_.correct(part, grey(.4F, at_ms(40))));
     advance(60, .01F, .5F);
-    Frame frame = grey(.5F, at_ms(60));
-    fusion_.prepare({});
-    fusion_.apply({}, constant(.5F), frame);
-    EXPECT_NEAR(frame.intensity(25, 40), .5, .01);
+    EXPECT_NEAR(shown(60, {}, .5F).intensity(25, 40), .5, .01);
 }
 
 TEST_F(ImageFusionTest, FramesThatDifferInOneNumberAreEachTheirOwn) {

@@ -81,6 +81,18 @@ TEST(LatentWindow, AFrameIsReadyWhereAllThatItMayReadIsKept) {
     EXPECT_EQ(readiness(450, 0), Readiness::later);
 }
 
+TEST(LatentWindow, TheOldestTimeIsTheFirstThatIsNotGone) {
+    LatentWindow window;
+    EXPECT_EQ(window.oldest(), SensorTime::min());
+    for (int i = 0; i < 7; ++i) {
+        LatentMap latent;
+        latent.window = {from_us(100 * i), from_us(100 * i + 100)};
+        window.push(latent);
+        EXPECT_EQ(window.readiness(window.oldest(), 0), Readiness::ready) << i;
+        EXPECT_EQ(window.readiness(window.oldest() - SensorDuration{1}, 0), Readiness::gone) << i;
+    }
+}
+
 TEST(LatentWindow, OfTheFirstWindowsNoneIsGone) {
     const LatentWindow window = of({{0, 100}, {100, 200}});
     for (const int us : {0, 50, 150, 200})

@@ -45,6 +45,14 @@ TEST(PastEvents, ThatComeEvenlyAreThoseSinceAnyTime) {
     }
 }
 
+TEST(PastEvents, CameBeforeTheFirstWindowAsOftenAsSince) {
+    PastEvents past{2, 1};
+    EXPECT_EQ(since(past, 0), 0);
+    remember(past, 10, 30, [](double end_ms) { return end_ms == 10 ? 3.F : 6.F; });
+    EXPECT_FLOAT_EQ(float(since(past, 0)), 15);
+    EXPECT_FLOAT_EQ(float(since(past, -20)), 25);
+}
+
 TEST(PastEvents, OfABurstAreKnownWithinTwentyMilliseconds) {
     for (int burst_ms = 30; burst_ms < 70; ++burst_ms) {
         PastEvents past{2, 1};

@@ -46,6 +46,9 @@ public:
     /// The same for the first time after take().
     void follow(const Array2<float>& shown) noexcept;
 
+    /// What is where it was followed to was in the image at x + this.
+    const MotionField& motion() const { return motion_; }
+
     /// Where the image tells something of what is shown where it was followed to, 0 to 1.
     void tell_trust(Array2<float>& trust) noexcept;
 

@@ -39,7 +39,7 @@ void FusedRenderer::begin() {
 
 void FusedRenderer::reset() noexcept {
     if (fusion_) fusion_->reset();
-    active_ = is_silent_before_ = false;
+    active_ = began_ = is_silent_before_ = false;
     waiting_count_ = 0;
     newest_used_ = SensorTime::min();
     dropped_ += images_.size();
@@ -65,8 +65,12 @@ void FusedRenderer::give(ReferenceImage image) noexcept {
 ///     push()     n - 1    n              n + 1
 ///     settles             n - 1          n            advance(), then the images until its end
 void FusedRenderer::push(const Window& window, const Array2<float>& events) noexcept {
-    active_ = active_ || due_images(window) > 0;
-    if (!active_) return;
+    if (!active_ && due_images(window) == 0) {
+        began_ = true;
+        return;
+    }
+    if (!active_ && began_) fusion_->begin_within_stream();
+    active_ = true;
     Waiting& newest = waiting_[(oldest_ + waiting_count_++) % waiting_.size()];
     newest.window = window;
     std::ranges::copy(events.values(), newest.events.values().begin());
@@ -137,10 +141,9 @@ void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexc
         return;
     }
     newest_used_ = image.t;
-    // What the model showed when the image was taken; where that is no longer known, at the
-    // window's begin.
-    SensorTime t = image.t;
-    if (!renderer_.ready(t, lookahead_)) t = window.begin + SensorDuration{1};
+    // What the model showed when the image was taken; where that is no longer known, as soon after
+    // that as it is.
+    SensorTime t = std::max(image.t, renderer_.oldest());
     if (!renderer_.ready(t, lookahead_)) t = window.end;
     show(t);
     ++(fusion_->correct(image, shown_) ? used_ : dropped_);

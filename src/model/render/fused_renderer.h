@@ -12,7 +12,7 @@ namespace eventide {
 /// Stands beside a Renderer, which it borrows, and sees the same event windows. Frames of a
 /// window know the images that were given before the window was pushed, or before those that its
 /// lookahead waits for. One thread at a time; nothing fails after construction. What corrections
-/// take (some 190 bytes a pixel) is taken with the first image: most sensors give none.
+/// take (some 200 bytes a pixel) is taken with the first image: most sensors give none.
 class FusedRenderer {
 public:
     /// Throws Error (usage) for a lookahead that is not 0, 1 or 2.
@@ -81,6 +81,7 @@ private:
     std::size_t most_waiting_ = kMaxWaiting;
     RenderRequest prepared_;
     bool active_ = false;                // since the first image's window; before, nothing is spent
+    bool began_ = false;                 // there were windows before it
     std::optional<ImageFusion> fusion_;  // none: before the first image
     Frame shown_;                        // by the model alone, at the time asked last
     bool is_silent_before_ = false;      // the window settled last

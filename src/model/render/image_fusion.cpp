@@ -16,13 +16,18 @@ constexpr float kImageNoise = .02F;
 constexpr float kFollowed = .1F;
 // A shutter that is said to have been open for longer (a damaged time) was open for this.
 constexpr SensorDuration kLongestExposure{10'000'000};
-// Share of its window over which an image comes in at least.
+// Share of its window over which an image comes in at least, and over which motion is measured.
 constexpr float kFastest = .25F;
 /// Where row or column `out` of a frame lies on the sensor (docs/model.md: corners lie on corners).
 LinearTap tap(int out, int out_size, int size) {
     const double at = out_size > 1 ? double(out) * (size - 1) / (out_size - 1) : 0;
     const int first = int(at);
     return {first, std::min(first + 1, size - 1), float(at - first)};
+}
+
+void copy(const MotionField& from, MotionField& to) noexcept {
+    copy(from.dx, to.dx);
+    copy(from.dy, to.dy);
 }
 
 }  // namespace
@@ -36,7 +41,7 @@ ImageFusion::ImageFusion(int sensor_width, int sensor_height)
     for (Expected& expected : expected_) {
         expected.correction = Array2<float>(height_, width_);
         expected.variance = Array2<float>(height_, width_);
-        expected.since_before = MotionField(width_, height_);
+        expected.since_before = expected.through = MotionField(width_, height_);
     }
     for (Array2<float>* map :
          {&shown_, &residual_, &trust_, &since_, &residual_within_, &correction_})
@@ -81,7 +86,10 @@ void ImageFusion::pass_window() noexcept {
     image_.pass(since_);
     for (float& events : since_.values()) events *= now.followed ? kFollowed : 1;
     pyramid_.forget(since_);
-    if (now.followed) image_.follow(shown_, now.since_before);
+    if (now.followed) {
+        image_.follow(shown_, now.since_before);
+        copy(now.since_before, now.through);
+    }
     expect_at_end();
 }
 
@@ -123,7 +131,7 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     Expected& now = newest();
     if (windows_ == 0 || image.t > now.window.end || image.t < now.window.end - kRemembered)
         return false;
-    if (windows_ == 1 && image.t <= now.window.begin && rendered.t >= now.window.begin) {
+    if (windows_ == 1 && image.t <= now.window.begin) {
         begin_with(image, rendered.intensity);
         return true;
     }
@@ -134,13 +142,34 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     fill(since_, 0);
     past_.add_since(std::clamp(image.exposure_begin, image.t - kLongestExposure, image.t), 1,
                     since_);
-    past_.add_since(image.t, knows_shown_ ? kFollowed - 1 : 0, since_);
+    // What happened before that which is shown was not followed.
+    past_.add_since(rendered.t, knows_shown_ ? kFollowed - 1 : 0, since_);
     pyramid_.observe(trust_, since_);
     if (!knows_shown_) copy(rendered.intensity, shown_);
     image_.follow(shown_);
+    if (knows_shown_) spread_motion(rendered.t, now);
     come_in(image.t, now);
     expect_at_end();
     return true;
+}
+
+/// Since t, when the scene was as an image has it, things are taken to have moved evenly, so that a
+/// frame at t shows the image as it is. Of a short time that would say little of the window; the
+/// first image has to do so all the same.
+void ImageFusion::spread_motion(SensorTime t, Expected& now) noexcept {
+    const auto width = double(now.window.width().count());
+    const auto since = double((now.window.end - t).count()), shortest = double(kFastest) * width;
+    if (now.followed && (t <= now.window.begin || since < shortest)) return;
+    const float times = width > 0 ? float(width / std::max(since, shortest)) : 0;
+    const auto spread = [times](const Array2<float>& motion, Array2<float>& through) {
+        std::ranges::transform(motion.values(), through.values().begin(),
+                               [times](float v) { return times * v; });
+    };
+    spread(image_.motion().dx, now.through.dx);
+    spread(image_.motion().dy, now.through.dy);
+    if (now.followed) return;
+    copy(now.through, now.since_before);
+    now.followed = true;
 }
 
 /// An image of the window, taken at t. In the first window there was none to go over from.
@@ -199,13 +228,13 @@ void ImageFusion::row_before(const Expected& before, const Expected& after, floa
 }
 
 /// Between the ends of a window: what is at x was at x + at d at the end of the one before, and
-/// will be at x - (1 - at) d at its own.
+/// will be at x - (1 - at) d at its own, d as the newest image has it.
 void ImageFusion::mix_ends(float at, float weight, const Expected& before,
                            const Expected& after) noexcept {
     for (int y = 0; y < height_; ++y) {
         const auto out = correction_.row(y);
         for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
-        if (after.followed) add_motion_row(after.since_before, y, at - 1, dx_, dy_);
+        if (after.followed) add_motion_row(after.through, y, at - 1, dx_, dy_);
         displaced_row(after.correction, y, dx_, dy_, out);
         row_before(before, after, at, y);
         for (std::size_t x = 0; x < out.size(); ++x) out[x] = mix(row_[x], out[x], weight);
@@ -217,8 +246,8 @@ void ImageFusion::correct_within(std::uint64_t window, float at, float weight,
                                  const Array2<float>& shown) noexcept {
     const Expected &after = at_end_of(window), &before = at_end_of(window - 1);
     if (window != windows_ || !after.followed) return mix_ends(at, weight, before, after);
-    image_.residual(shown, after.since_before, 1 - at, residual_within_);
-    pyramid_.correct(residual_within_, correction_);
+    image_.residual(shown, after.through, 1 - at, residual_within_);
+    pyramid_.correct(residual_within_, correction_, at);
     if (!after.new_image) return;
     // The image before is gone, but not what it said at the end of the window before.
     for (int y = 0; y < height_; ++y) {

@@ -42,13 +42,18 @@ public:
 
     void reset() noexcept;
 
+    /// There were event windows before the first one that advance() tells of: what is known at its
+    /// begin is not what is known where a stream begins. Before that.
+    void begin_within_stream() noexcept { windows_ = 1; }
+
     /// The next event window, its events per pixel, [y][x] of the sensor, and what the model shows
     /// at its end, at the sensor's size; where that is not known, nothing is taken to have moved.
     void advance(const Window& window, const Array2<float>& events, const Frame* at_end) noexcept;
 
-    /// An image of the sensor, and what the model shows at that time (or as near as it can), at the
-    /// sensor's size. Of the part that the image covers. Images of times after the newest window's
-    /// end, and those older than kRemembered before it, tell nothing; false for these.
+    /// An image of the sensor, and what the model shows at that time (or as soon after it as it
+    /// can), at the sensor's size. Of the part that the image covers. Images of times after the
+    /// newest window's end, and those older than kRemembered before it, tell nothing; false for
+    /// these.
     bool correct(const ReferenceImage& image, const Frame& rendered) noexcept;
 
     /// To a frame as it was rendered for `request`, at frame.t within one of the last three
@@ -68,6 +73,7 @@ private:
         Window window{};
         Array2<float> correction, variance;
         MotionField since_before;  // what is at x was at x + this at the end of the window before
+        MotionField through;       // the same, by the motion since a new image was taken
         bool followed = false;     // it is known how things moved
         bool new_image = false;    // an image came
         float whole_from = 1;      // where in the window it counts whole, 1 at the end
@@ -75,6 +81,7 @@ private:
     const Expected& at_end_of(std::uint64_t window) const;
     void pass_window() noexcept;
     void begin_with(const ReferenceImage& image, const Array2<float>& shown) noexcept;
+    void spread_motion(SensorTime t, Expected& now) noexcept;
     void come_in(SensorTime t, Expected& now) const noexcept;
     void know(const Array2<float>& shown, const MotionField& since_before) noexcept;
     void expect(Expected& expected) noexcept;

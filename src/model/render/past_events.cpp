@@ -20,16 +20,16 @@ PastEvents::PastEvents(int width, int height) {
 
 void PastEvents::reset() noexcept {
     for (Slot& slot : slots_) slot.window = {};
-    empty_ = true;
+    all_.reset();
 }
 
 void PastEvents::remember(const Window& window, const Array2<float>& events) noexcept {
-    if (slots_[newest_].window.width() >= kSlot || empty_) {
+    if (slots_[newest_].window.width() >= kSlot || !all_) {
         newest_ = (newest_ + 1) % slots_.size();
         slots_[newest_].window = {window.begin, window.begin};
         fill(slots_[newest_].events, 0);
     }
-    empty_ = false;
+    all_ = {all_ ? all_->begin : window.begin, window.end};
     Slot& slot = slots_[newest_];
     slot.window.end = window.end;
     for (std::size_t i = 0; i < slot.events.values().size(); ++i)
@@ -37,6 +37,8 @@ void PastEvents::remember(const Window& window, const Array2<float>& events) noe
 }
 
 void PastEvents::add_since(SensorTime t, float weight, Array2<float>& sum) const noexcept {
+    if (const double known = all_ ? double(all_->width().count()) : 0; known > 0 && t < all_->begin)
+        weight *= float(double((all_->end - t).count()) / known);
     for (const Slot& slot : slots_) {
         const double width = double(slot.window.width().count());
         if (width <= 0 || slot.window.end <= t) continue;

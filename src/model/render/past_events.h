@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace eventide {
 
@@ -23,7 +24,7 @@ public:
     void remember(const Window& window, const Array2<float>& events) noexcept;
 
     /// Adds `weight` times the events per pixel since t, which are taken to have come evenly within
-    /// 20 ms.
+    /// 20 ms, and before the first window as often as since then.
     void add_since(SensorTime t, float weight, Array2<float>& sum) const noexcept;
 
 private:
@@ -34,7 +35,7 @@ private:
     // A ring: the newest slot is filled until it is 18.2 ms wide, then the oldest begins anew.
     std::array<Slot, 12> slots_;
     std::size_t newest_ = 0;
-    bool empty_ = true;
+    std::optional<Window> all_;  // from the first window's begin to the newest's end
 };
 
 }  // namespace eventide

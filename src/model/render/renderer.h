@@ -56,6 +56,8 @@ public:
     void reset() noexcept;
 
     Readiness readiness(SensorTime t, int lookahead) const noexcept;
+    /// The earliest time that is not gone.
+    SensorTime oldest() const noexcept { return window_.oldest(); }
     bool ready(SensorTime t, int lookahead) const noexcept {
         return readiness(t, lookahead) == Readiness::ready;
     }

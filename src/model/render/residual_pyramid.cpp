@@ -26,8 +26,8 @@ void ResidualPyramid::Band::fade() noexcept {
 ResidualPyramid::ResidualPyramid(int width, int height) {
     for (int k = 0; k < kMaxBands && (k == 0 || std::min(width, height) > 1); ++k) {
         Band band;
-        for (Array2<float>* map :
-             {&band.events, &band.rho, &band.known, &band.where, &band.mean, &band.part, &band.sum})
+        for (Array2<float>* map : {&band.events, &band.rho, &band.rho_before, &band.known,
+                                   &band.where, &band.mean, &band.part, &band.sum})
             *map = Array2<float>(height, width);
         band.reach = kForgottenPerEvent / float(1 << k);
         bands_.push_back(std::move(band));
@@ -41,7 +41,7 @@ ResidualPyramid::ResidualPyramid(int width, int height) {
 void ResidualPyramid::reset() noexcept {
     for (Band& band : bands_) {
         for (Array2<float>* map : {&band.events, &band.known}) fill(*map, 0);
-        for (Array2<float>* map : {&band.rho, &band.where}) fill(*map, 1);
+        for (Array2<float>* map : {&band.rho, &band.rho_before, &band.where}) fill(*map, 1);
     }
 }
 
@@ -53,6 +53,7 @@ void ResidualPyramid::forget(const Array2<float>& events) noexcept {
         if (k > 0) now = &band.sum;
         for (std::size_t i = 0; i < band.events.values().size(); ++i)
             band.events.values()[i] += now->values()[i];
+        copy(band.rho, band.rho_before);
         band.fade();
     }
 }
@@ -69,6 +70,7 @@ void ResidualPyramid::observe(const Array2<float>& trust, const Array2<float>& e
         }
         k == 0 ? copy(events, band.events) : halve(bands_[k - 1].events, band.events);
         band.fade();
+        copy(band.rho, band.rho_before);
     }
 }
 
@@ -84,7 +86,8 @@ void ResidualPyramid::know(const Array2<float>& where) noexcept {
 ///     c_k = min(1, 4 w_k),    c_0 = w_0
 ///
 ///     correction = sum over k of up(rho_k r_k)
-void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& correction) noexcept {
+void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& correction,
+                              float at) noexcept {
     copy(residual, bands_.front().mean);
     for (std::size_t k = 1; k < bands_.size(); ++k) {
         Band &band = bands_[k], &finer = bands_[k - 1];
@@ -112,7 +115,8 @@ void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& corr
         fill(sum, 0);
         if (coarser) add_doubled(coarser->sum, sum);
         for (std::size_t i = 0; i < sum.values().size(); ++i)
-            sum.values()[i] += band.rho.values()[i] * band.part.values()[i];
+            sum.values()[i] +=
+                mix(band.rho_before.values()[i], band.rho.values()[i], at) * band.part.values()[i];
     }
 }
 

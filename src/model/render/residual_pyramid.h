@@ -40,8 +40,9 @@ public:
     /// go on. All of them, after reset().
     void know(const Array2<float>& where) noexcept;
 
-    /// What to add to a frame that lacks `residual`; [y][x]. Not the same array.
-    void correct(const Array2<float>& residual, Array2<float>& correction) noexcept;
+    /// What to add to a frame that lacks `residual`; [y][x]. Not the same array. `at`: where in the
+    /// time that forget() told of last, 1 at its end; an observe() after it counts for all of that.
+    void correct(const Array2<float>& residual, Array2<float>& correction, float at = 1) noexcept;
 
     /// Which share of the model's variance is left; [y][x].
     void variance(Array2<float>& left) noexcept;
@@ -50,6 +51,7 @@ private:
     struct Band {
         Array2<float> events;           // per pixel, since the image
         Array2<float> rho;              // by these
+        Array2<float> rho_before;       // and before the last of them
         Array2<float> known;            // rho when the image was taken
         Array2<float> where;            // residuals are known
         Array2<float> mean, part, sum;  // scratch of correct()
