@@ -20,7 +20,7 @@ void add_measures(py::module_& module) {
             "between",
             [](const PerceptualDistance& lpips, const py::array& a, const py::array& b) {
                 const Array2<float> first = plane_of(a, "a"), second = plane_of(b, "b");
-                const py::gil_scoped_release released;
+                const Unlocked unlocked;
                 return lpips.between(first, second);
             },
             py::arg("a"), py::arg("b"), "0 for equal images, about .7 for unlike ones.");
@@ -34,7 +34,7 @@ void add_measures(py::module_& module) {
             if (!sigma.is_none()) doubt = plane_of(sigma.cast<py::array>(), "sigma");
             FrameMeasures m;
             {
-                const py::gil_scoped_release released;
+                const Unlocked unlocked;
                 m = measure(shown, doubt, expected, lpips);
             }
             py::dict measures;

@@ -1,6 +1,8 @@
 // The parts of the module.
 #pragma once
 
+#include "python/lock.h"
+
 #include <eventide/reconstructor.h>
 
 #include <pybind11/pybind11.h>
@@ -22,7 +24,7 @@ struct Guarded {
     /// Runs `body(it)` without Python's lock.
     template <typename Body>
     auto with(Body body) {
-        const pybind11::gil_scoped_release released;
+        const Unlocked unlocked;
         const std::lock_guard lock{mutex};
         return body(it);
     }

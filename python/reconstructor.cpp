@@ -45,7 +45,7 @@ std::unique_ptr<GuardedReconstructor> make(const std::filesystem::path& model, i
         .self_ensemble = self_ensemble,
         .reset_on_gap = reset_on_gap,
         .allow_silence = allow_silence};
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return std::make_unique<GuardedReconstructor>(model.string(), width, height, options);
 }
 

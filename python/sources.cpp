@@ -139,7 +139,7 @@ void add_reader(py::module_& module) {
         "be guessed is logged, too, as warnings of the logger \"eventide\".")
         .def(py::init([](const std::filesystem::path& path, std::string format, int width,
                          int height, std::string stream) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<Source<EventReader>>(
                      path.string(), ReaderOptions{std::move(format), width, height, hear_signals,
                                                   log_warning, std::move(stream)});
@@ -182,7 +182,7 @@ void add_camera(py::module_& module) {
         "passed over, or is waited for, are warnings of the logger \"eventide\".")
         .def(py::init([](const std::string& name, const std::filesystem::path& settings,
                          bool reconnect) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<Source<EventCamera>>(
                      name, CameraSettings{settings, reconnect, hear_signals, log_warning});
              }),
@@ -206,7 +206,7 @@ void add_writer(py::module_& module) {
                               "the end of a with block.")
         .def(py::init([](const std::filesystem::path& path, int width, int height,
                          std::string format, bool overwrite) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<GuardedWriter>(
                      path.string(), SensorInfo{"", "", "", width, height},
                      WriterOptions{std::move(format), overwrite, hear_signals});
