@@ -1,6 +1,7 @@
 // The parts of the module.
 #pragma once
 
+#include "python/call_lock.h"
 #include "python/lock.h"
 
 #include <eventide/reconstructor.h>
@@ -21,16 +22,21 @@ struct Guarded {
     template <typename... Arguments>
     explicit Guarded(Arguments&&... arguments) : it(std::forward<Arguments>(arguments)...) {}
 
-    /// Runs `body(it)` without Python's lock.
+    /// Runs `body(it)` without Python's lock. Throws Error (usage) within another call of it.
     template <typename Body>
     auto with(Body body) {
         const Unlocked unlocked;
         const std::lock_guard lock{mutex};
         return body(it);
     }
+    /// For a body that only looks, also within another call of it.
+    template <typename Body>
+    auto look(Body body) {
+        return mutex.is_held_here() ? body(it) : with(body);
+    }
 
     T it;
-    std::mutex mutex;
+    CallLock mutex;
 };
 
 /// With the size of its options, which render() starts from.

@@ -124,10 +124,10 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
         .def_property_readonly(
             "sensor", [](Source<T>& s) { return s.it.info().name; }, "its name; may be empty")
         .def_property_readonly(
-            "clock", [](Source<T>& s) { return us_of(s.with([&](T&) { return s.told().clock; })); },
+            "clock", [](Source<T>& s) { return us_of(s.look([&](T&) { return s.told().clock; })); },
             "us, the newest time told so far, or None")
         .def_property_readonly(
-            "damaged", [](Source<T>& s) { return s.with([&](T&) { return s.told().damaged; }); },
+            "damaged", [](Source<T>& s) { return s.look([&](T&) { return s.told().damaged; }); },
             "places where bytes made no sense, so far");
     return made;
 }
