@@ -54,13 +54,12 @@ inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
 /// Throws TypeError, naming what is wanted and what was found.
 template <typename T>
 T cast_to(const char* name, pybind11::handle value) {
-    try {
-        return value.cast<T>();
-    } catch (const pybind11::cast_error&) {
-        throw pybind11::type_error(std::string{name} + ": expected " +
-                                   pybind11::detail::make_caster<T>::name.text + ", found " +
-                                   std::string(pybind11::repr(value)));
-    }
+    using Caster = pybind11::detail::make_caster<T>;
+    Caster caster;
+    if (!caster.load(value, true))
+        throw pybind11::type_error(std::string{name} + ": expected " + Caster::name.text +
+                                   ", found " + std::string(pybind11::repr(value)));
+    return pybind11::detail::cast_op<T>(std::move(caster));
 }
 
 /// The options of Reconstructor by name, the others as they are. Throws Error (usage) for unknown

@@ -78,9 +78,9 @@ public:
                      const std::filesystem::path& model, int width, int height, double latency,
                      bool sequential, const py::kwargs& options)
         : sequential_(sequential), source_(run_source(source, width, height, sequential)) {
-        for (const py::handle sink : py::isinstance<py::sequence>(sinks)
-                                         ? py::list(sinks)
-                                         : py::list(py::make_tuple(sinks))) {
+        const bool is_list =
+            PyCallable_Check(sinks.ptr()) == 0 && py::isinstance<py::sequence>(sinks);
+        for (const py::handle sink : is_list ? py::list(sinks) : py::list(py::make_tuple(sinks))) {
             if (PyCallable_Check(sink.ptr()) == 0)
                 throw py::type_error("sinks: expected a callable, or a list of them, found " +
                                      py::repr(sink).cast<std::string>());

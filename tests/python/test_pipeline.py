@@ -102,6 +102,14 @@ class Pipelines(RecordedTest):
             with self.assertRaisesRegex(OSError, "camera gone"):
                 self.frames_of(failing(eventide.open(self.recording)))
 
+    def test_a_sink_that_is_a_list_besides_is_called(self):
+        class Kept(list):
+            __call__ = list.append
+
+        kept = Kept()
+        eventide.Pipeline(eventide.open(self.recording), kept, "small", **REPEATABLE).run()
+        self.assertGreater(len(kept), 25)
+
     def test_sinks_that_cannot_be_called_are_refused_before_anything_is_read(self):
         for sinks, named in ((None, "None"), ([print, 5], "5"), ("frames.mp4", "'f'")):
             with self.assertRaisesRegex(TypeError, f"sinks: expected a callable.*{named}"):
@@ -264,6 +272,8 @@ class Pipelines(RecordedTest):
             def __iter__(self):
                 return iter([np.zeros(0, DTYPE)])
 
+        with self.assertRaisesRegex(TypeError, r"events: expected numpy.ndarray, found \(array"):
+            eventide.Pipeline(eventide.simulate("demo", (64, 48), 0.1), print, "small").run()
         with self.assertRaisesRegex(TypeError, "height: expected int, found '48'"):
             eventide.Pipeline(Source(), print, "small")
         with self.assertRaisesRegex(TypeError, "clock: expected int, found 'noon'"):
