@@ -247,6 +247,48 @@ class Pipelines(RecordedTest):
             gc.collect()
             self.assertIsNone(pipeline())
 
+    def test_its_options_are_those_of_the_reconstructor(self):
+        def shown(frame):
+            return frame.t, frame.intensity.tobytes(), None if frame.sigma is None else frame.sigma.tobytes()
+
+        def frames(options):
+            frames = []
+            options = {**REPEATABLE, **options}
+            pipeline = eventide.Pipeline(
+                eventide.open(self.recording), lambda frame: frames.append(shown(frame)), "small", **options
+            )
+            pipeline.run()
+            reader, reconstructor = eventide.open(self.recording), self.reconstructor(**options)
+            self.assertEqual(frames, [shown(f) for f in eventide.read_frames(reader, reconstructor)])
+            return frames
+
+        hot = self.folder / "hot.txt"
+        hot.write_text("".join(f"{x},{y}\n" for x in range(64) for y in range(0, 48, 2)))
+        as_they_are = frames({})
+        for options in (
+            {"window": "auto"},
+            {"lookahead": 0},
+            {"fps": 50},
+            {"size": (32, 24)},
+            {"roi": (10, 20, 30, 24)},
+            {"sigma": False},
+            {"hot_pixels": hot},
+            {"noise_filter": "1ms"},
+            {"images": False},
+            {"self_ensemble": 2},
+            {"precision": "bf16"},
+        ):
+            with self.subTest(options):
+                self.assertNotEqual(frames(options), as_they_are)
+        for options, words in (
+            ({"lamp_flicker": "bananas"}, "bananas"),
+            ({"kernels": "bananas"}, "kernels: expected auto, own or onednn, found 'bananas'"),
+            ({"threads": -3}, "threads: .* found -3"),
+        ):
+            for make in (self.reconstructor, lambda **more: self.frames_of(eventide.open(self.recording), **more)):
+                with self.assertRaisesRegex(eventide.UsageError, words):
+                    make(**options)
+
     def test_what_cannot_run_is_refused(self):
         with self.assertRaisesRegex(eventide.UsageError, "width"):
             eventide.Pipeline([], print, "small")
