@@ -49,7 +49,8 @@ void add_measures(py::module_& module) {
         },
         py::arg("intensity"), py::arg("truth"), py::arg("sigma") = py::none(),
         py::arg("lpips") = static_cast<PerceptualDistance*>(nullptr),
-        "How far a frame is from the truth (mse, ssim, both after a fit of gain and offset), and "
+        "How far a frame is from the truth, both floats [y, x], 0 black to 1 white (mse, ssim, "
+        "both after a fit of gain and offset), and "
         "whether sigma knew (picp80, .8 is right; log_likelihood); None where there is no sigma, "
         "or for lpips no PerceptualDistance.");
 }

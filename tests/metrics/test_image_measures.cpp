@@ -2,6 +2,7 @@
 #include "src/core/error.h"
 #include "src/metrics/image_measures.h"
 #include "tests/metrics/images.h"
+#include "tests/support/error_of.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,8 @@
 
 namespace eventide {
 namespace {
+
+using test::error_of;
 
 TEST(ImageMeasures, FindNothingBetweenAnImageAndItself) {
     const auto a = test_image(40, 50, 1);
@@ -66,9 +69,12 @@ TEST(StructuralSimilarity, RefusesImagesItsWindowDoesNotFit) {
         EXPECT_THROW(structural_similarity(small, small), Error);
 }
 
-TEST(ImageMeasures, RefuseImagesOfTwoSizes) {
-    EXPECT_THROW(mean_squared_error(test_image(20, 20, 1), test_image(20, 21, 1)), Error);
+TEST(ImageMeasures, RefuseImagesOfTwoSizesAndOfNone) {
+    EXPECT_EQ(error_of([] { mean_squared_error(test_image(20, 20, 1), test_image(20, 21, 1)); }),
+              "two images to compare: expected the same size, found 20x20 and 21x20");
     EXPECT_THROW(structural_similarity(test_image(20, 20, 1), test_image(21, 20, 1)), Error);
+    EXPECT_EQ(error_of([] { mean_squared_error(Array2<float>(0, 5), Array2<float>(0, 5)); }),
+              "two images to compare: expected pixels, found 5x0");
 }
 
 TEST(AffineFit, UndoesGainAndOffset) {

@@ -50,9 +50,10 @@ class Frames(RecordedTest):
     def test_are_corrected_by_images_of_ones_own(self):
         still = np.full((48, 64), 200, np.uint8)
         still[10:20, 30:40] = 20
+        with_alpha = np.stack(3 * [still] + [np.full_like(still, 255)], axis=2)
         events = np.zeros(3, [("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("on", "?")])
         events["t"] = 1000, 20_000, 60_000
-        for image in (still, still.astype(np.uint16) * 257, np.stack(3 * [still], axis=2)):
+        for image in (still, still.astype(np.uint16) * 257, np.stack(3 * [still], axis=2), with_alpha):
             reconstructor = self.reconstructor()
             reconstructor.push(events[:2])
             reconstructor.push_image(15_000, image, exposure=(12_000, 18_000))
@@ -60,7 +61,7 @@ class Frames(RecordedTest):
             intensity, _ = reconstructor.render(reconstructor.newest())
             np.testing.assert_allclose(intensity, still / 255, atol=0.02)
             self.assertEqual(reconstructor.counters["used_images"], 1)
-        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2)):
+        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2), still[:0], still[:, :0]):
             with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
                 reconstructor.push_image(70_000, image)
         with self.assertRaisesRegex(eventide.UsageError, "exposure_end not before exposure_begin, found 60000 us"):
