@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -198,17 +199,32 @@ void add_camera(py::module_& module) {
             "From any thread: iteration ends soon.");
 }
 
+/// None once a with block was left by an exception.
+struct GuardedWriter : Guarded<std::optional<EventWriter>> {
+    using Guarded::Guarded;
+
+    template <typename Body>
+    void with_open(Body body) {
+        with([&](std::optional<EventWriter>& writer) {
+            if (!writer)
+                throw Error(ErrorKind::usage,
+                            "expected a recording that is being written, found one that was given "
+                            "up");
+            body(*writer);
+        });
+    }
+};
+
 void add_writer(py::module_& module) {
-    using GuardedWriter = Guarded<EventWriter>;
-    const auto finish = [](GuardedWriter& w) { w.with([](EventWriter& it) { it.finish(); }); };
+    const auto finish = [](GuardedWriter& w) { w.with_open([](EventWriter& it) { it.finish(); }); };
     py::class_<GuardedWriter>(module, "Writer",
                               "A recording being written; it appears whole, with finish() or at "
-                              "the end of a with block.")
+                              "the end of a with block. Of one left by an exception nothing stays.")
         .def(py::init([](const std::filesystem::path& path, int width, int height,
                          std::string format, bool overwrite) {
                  const Unlocked unlocked;
                  return std::make_unique<GuardedWriter>(
-                     path.string(), SensorInfo{"", "", "", width, height},
+                     std::in_place, path.string(), SensorInfo{"", "", "", width, height},
                      WriterOptions{std::move(format), overwrite, hear_signals});
              }),
              py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",
@@ -218,14 +234,15 @@ void add_writer(py::module_& module) {
             [](GuardedWriter& w, const py::array& events) {
                 std::vector<Event> all;
                 append_events(events, all);
-                w.with([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
+                w.with_open([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
             },
             py::arg("events"), "Events in order of time, which follow the ones before.")
         .def("finish", finish, "Ends the recording and shows the file.")
         .def("__enter__", [](const py::object& self) { return self; })
         .def("__exit__", [finish](GuardedWriter& w, const py::object& type, const py::object&,
                                   const py::object&) {
-            if (type.is_none()) finish(w);
+            if (type.is_none()) return finish(w);
+            w.with([](std::optional<EventWriter>& it) { it.reset(); });
         });
 }
 

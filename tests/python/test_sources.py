@@ -88,8 +88,16 @@ class Sources(RecordedTest):
             with eventide.Writer(str(file), 64, 48) as writer:
                 writer.write(self.events())
                 raise KeyError
-        del writer
-        self.assertFalse(file.exists())
+        self.assertEqual(list(self.folder.glob("half*")), [])
+        for again in (lambda: writer.write(self.events()), writer.finish):
+            with self.assertRaisesRegex(eventide.UsageError, "being written, found one that was given up"):
+                again()
+
+    def test_what_is_written_has_a_name(self):
+        with self.assertRaisesRegex(eventide.UsageError, "expected the name of a file, found none"):
+            eventide.Writer("", 64, 48, "text")
+        with self.assertRaisesRegex(eventide.UsageError, "expected the name of a file, found none"):
+            self.reconstructor().save_state("")
 
     def test_a_camera_gives_events_until_it_is_stopped(self):
         camera = eventide.open_camera("sim:demo?size=64x48&speed=max")
