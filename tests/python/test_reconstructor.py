@@ -5,7 +5,7 @@ import unittest
 
 import eventide
 import numpy as np
-from recorded import RecordedTest
+from recorded import DTYPE, RecordedTest
 
 
 class Frames(RecordedTest):
@@ -180,6 +180,35 @@ class Frames(RecordedTest):
         for t in (1.5, float("nan")):
             with self.assertRaises(TypeError):
                 self.reconstructor().render(t)
+
+    def test_counters_tell_each_what_it_is_called(self):
+        def at(*times, x=5):
+            events = np.zeros(len(times), DTYPE)
+            events["t"], events["x"] = times, x
+            return events
+
+        reconstructor = self.reconstructor(noise_filter="off", lamp_flicker="off")
+        reconstructor.push(at(0))
+        reconstructor.advance(100_000)
+        reconstructor.newest()
+        reconstructor.push(at(50_000))  # late
+        reconstructor.push(at(10, 20))  # earlier
+        reconstructor.push(at(*[100_000] * 3, x=64))
+        reconstructor.push(at(*[2**62] * 4))
+        for t in range(45_000, 0, -9_000):
+            reconstructor.push(at(t), resets=True)
+        frames = len(list(reconstructor.frames()))
+        image = np.full((48, 64), 100, np.uint8)
+        for t, of_images in ((10**6, []), (1_100_000, [999_000]), (1_200_000, [*range(1000, 7000, 1000), 1_050_000])):
+            for of_image in of_images:
+                reconstructor.push_image(of_image, image)
+            reconstructor.push(at(t))
+            frames += len(list(reconstructor.frames()))
+        counters = reconstructor.counters
+        self.assertGreater(counters.pop("event_windows"), 60)
+        expected = {"late": 1, "time_backwards": 2, "off_sensor": 3, "bad_time": 4, "time_resets": 5}
+        expected |= {"dropped_images": 6, "used_images": 2, "filtered": 0, "left_out": 0}
+        self.assertEqual(counters, expected | {"events": 19, "frames": frames})
 
     def test_threads_share_one_object_and_python_runs_on(self):
         reconstructor = self.reconstructor()
