@@ -163,6 +163,10 @@ TEST(LpipsAlex, IsReadFromTheSameLayout) {
     EXPECT_EQ(a.layers[2].height(), 3);
     EXPECT_EQ(lpips.distance(a, a), 0);
     EXPECT_GT(lpips.distance(a, b), 0);
+    EXPECT_NO_THROW(lpips.features(test_image(31, 31, 1)));
+    EXPECT_THROW(lpips.features(test_image(30, 31, 1)), Error);
+    EXPECT_THROW(lpips.features(test_image(31, 30, 1)), Error);
+    EXPECT_THROW(lpips.features(Array3<float>(64, 64, 1)), Error) << "of one channel";
     expect_bilinear_map(lpips, a);
 }
 

@@ -135,6 +135,34 @@ class Pipelines(RecordedTest):
             eventide.Pipeline(camera, twenty, "small", **options).run()
             self.assertGreater(seen[-1], 100_000)
 
+    def test_a_live_source_of_ones_own_tells_its_clock_and_its_gaps(self):
+        class Live:
+            width, height, gap_before, clock = 64, 48, False, None
+
+            def __iter__(self):
+                for n in range(1, 31):
+                    events = np.zeros(1 if n in (1, 5) else 0, DTYPE)
+                    events["t"], self.clock, self.gap_before = 10_000 * n - 1, 10_000 * n, n == 5
+                    yield events
+
+        seen = []
+        options = {**REPEATABLE, "window": "10ms", "lookahead": 0, "noise_filter": "off", "lamp_flicker": "off"}
+        pipeline = eventide.Pipeline(Live(), seen.append, "small", sequential=True, latency=0, **options)
+        pipeline.run()
+        self.assertGreater(seen[-1].t, 280_000, "the clock goes on without events")
+        gaps = [frame.t for frame in seen if frame.gap_before]
+        self.assertEqual([30_000 < t < 60_000 for t in gaps], [True])
+        counters = pipeline.counters
+        self.assertEqual((counters["gaps"], counters["events"], counters["damaged"]), (1, 2, 0))
+        self.assertEqual(counters["frames"], len(seen))
+
+    def test_events_of_no_sensor_and_no_time_are_counted(self):
+        events = np.zeros(5, DTYPE)
+        events["t"], events["x"] = [1, 2, 2**62, 4, 5], [0, 64, 0, 0, 65535]
+        pipeline = eventide.Pipeline([events], [], "small", width=64, height=48)
+        pipeline.run()
+        self.assertEqual((pipeline.counters["events"], pipeline.counters["damaged"]), (2, 3))
+
     def test_what_a_pipeline_reads_nobody_else_reads(self):
         for sequential in (False, True):
             reader, camera = eventide.open(self.recording), eventide.open_camera("sim:demo?size=64x48&speed=max")

@@ -1,5 +1,6 @@
 """Scenes with their truth, and how far frames are from it, in Python."""
 
+import pathlib
 import subprocess
 import unittest
 
@@ -23,6 +24,13 @@ class Simulations(RecordedTest):
         shapes = {image.shape for _, images in simulation for _, image in images}
         self.assertEqual(shapes, {(47, 63)})
         self.assertEqual(simulation.clock, 20_000)
+
+    def test_another_seed_is_another_scene(self):
+        def events(seed):
+            return np.concatenate([e for e, _ in eventide.simulate(size=(32, 24), seconds=0.1, seed=seed)])
+
+        np.testing.assert_array_equal(events(5), events(5))
+        self.assertFalse(np.array_equal(events(5), events(6)))
 
     def test_what_makes_no_sense_is_refused_by_name(self):
         self.assertIn("demo", eventide.Simulation.scenes())
@@ -56,6 +64,21 @@ class Evaluation(RecordedTest):
         with self.assertRaisesRegex(eventide.InputError, "missing"):
             eventide.PerceptualDistance(self.folder / "missing")
         self.assertIsNone(eventide.evaluate(np.zeros((20, 20)), np.zeros((20, 20)))["lpips"])
+
+    def test_perceptual_distance_is_one_of_the_measures(self):
+        weights = pathlib.Path(__file__).parents[2] / "../shared/data/perceptual/lpips_squeeze_v0.1.npz"
+        if not weights.exists():
+            self.skipTest(f"no LPIPS weights: {weights}")
+        lpips = eventide.PerceptualDistance(weights)
+        self.assertEqual(lpips.name, "LPIPS-Squeeze")
+        truth = np.random.default_rng(1).random((40, 50), np.float32)
+        self.assertEqual(lpips.between(truth, truth), 0)
+        self.assertGreater(lpips.between(truth / 4, truth), 0.05)
+        self.assertEqual(eventide.evaluate(truth / 4, truth, lpips=lpips)["lpips"], lpips.between(truth / 4, truth))
+        with self.assertRaisesRegex(eventide.UsageError, "LPIPS, second image: expected finite numbers, found nan"):
+            lpips.between(truth, np.full_like(truth, np.nan))
+        with self.assertRaisesRegex(eventide.UsageError, "b: expected floats, 0 black to 1 white, found uint8"):
+            lpips.between(truth, np.zeros((40, 50), np.uint8))
 
     def test_planes_of_other_shapes_are_refused(self):
         plane, wide = np.zeros((20, 20)), np.zeros((20, 21))

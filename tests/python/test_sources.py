@@ -163,6 +163,8 @@ class Sources(RecordedTest):
         self.assertIn("does not say the sensor's size", logged.output[-1])
         with self.assertRaises(AssertionError), self.assertLogs("eventide"):
             eventide.open(log, width=64, height=48)
+        sized = eventide.Reader(log, "text", 70, 50)
+        self.assertEqual((sized.width, sized.height, sized.format), (70, 50, "text"))
 
     def test_of_several_cameras_the_events_of_the_stream_that_is_wanted_are_read(self):
         whole, chosen = eventide.open(self.recording), eventide.open(self.recording, stream="0")
