@@ -156,6 +156,56 @@ class Pipelines(RecordedTest):
         self.assertEqual((counters["gaps"], counters["events"], counters["damaged"]), (1, 2, 0))
         self.assertEqual(counters["frames"], len(seen))
 
+    def test_a_gap_forgets_the_scene_where_that_is_wanted(self):
+        before, after = np.array_split(self.events(), 2)
+
+        class Gap:
+            width, height, gap_before = 64, 48, False
+
+            def __iter__(self):
+                yield before
+                self.gap_before = True
+                yield after
+
+        def piped(reset_on_gap):
+            frames = []
+            options = {"sequential": True, "latency": 0, "reset_on_gap": reset_on_gap, **REPEATABLE}
+            eventide.Pipeline(Gap(), frames.append, "small", **options).run()
+            return {f.t: f.intensity.tobytes() for f in frames}  # a live source may leave out some
+
+        def one_by_one(reset_on_gap):
+            reconstructor = self.reconstructor(reset_on_gap=reset_on_gap)
+            reconstructor.push(before)
+            reconstructor.mark_gap()
+            reconstructor.push(after)
+            return {f.t: f.intensity.tobytes() for f in reconstructor.frames()}
+
+        for frames in (piped, one_by_one):
+            kept, forgotten = frames(False), frames(True)
+            others = [t for t in kept.keys() & forgotten.keys() if kept[t] != forgotten[t]]
+            self.assertGreater(len(others), 0)
+            self.assertGreater(min(others), before["t"][-1] - 10_000)
+
+    def test_a_silence_is_rendered_where_that_is_allowed(self):
+        far_apart = np.zeros(2, DTYPE)
+        far_apart["t"] = 0, 10**12  # 100 million frames
+        for allowed in (False, True):
+            seen = []
+
+            def hundred(frame):
+                seen.append(frame)
+                return len(seen) < 100
+
+            pipeline = eventide.Pipeline(
+                [far_apart], hundred, "small", width=64, height=48, allow_silence=allowed, **REPEATABLE
+            )
+            if allowed:
+                pipeline.run()
+                self.assertEqual(len(seen), 100)
+            else:
+                with self.assertRaisesRegex(eventide.InputError, "without events"):
+                    pipeline.run()
+
     def test_events_of_no_sensor_and_no_time_are_counted(self):
         events = np.zeros(5, DTYPE)
         events["t"], events["x"] = [1, 2, 2**62, 4, 5], [0, 64, 0, 0, 65535]
