@@ -5,6 +5,7 @@ import os
 import pathlib
 import struct
 import subprocess
+import threading
 import unittest
 import zlib
 
@@ -94,8 +95,16 @@ class Sources(RecordedTest):
             camera.read_into(reconstructor)
         self.assertLess(damaged, 400 * 4600)
         send(outside)
-        send([(1000 + i, i, i, 1) for i in range(40)])
+
+        def follow():  # in a read of its own
+            while camera.damaged == damaged:
+                pass
+            send([(1000 + i, i, i, 1) for i in range(40)])
+
+        following = threading.Thread(target=follow)
+        following.start()
         self.assertGreater(len(next(camera)), 0)
+        following.join()
         self.assertTrue(camera.gap_before)
         send([(2000 + i, i, i, 1) for i in range(40)])
         self.assertGreater(len(next(camera)), 0)
