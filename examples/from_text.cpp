@@ -36,6 +36,11 @@ int main(int argc, char** argv) try {
                 out.write(reinterpret_cast<const char*>(plane->values().data()),
                           std::streamsize(plane->values().size_bytes()));
     }
+    if (!events.eof())
+        throw eventide::Error(eventide::ErrorKind::input,
+                              std::string(argv[1]) +
+                                  ": expected events \"t x y p\", found a line "
+                                  "that is none");
     if (!out.flush()) return std::cerr << argv[2] << ": cannot be written\n", 1;
 } catch (const eventide::Error& error) {
     std::cerr << error.what() << '\n';

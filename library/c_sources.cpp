@@ -16,7 +16,6 @@ namespace {
 
 template <typename Opened, typename... Arguments>
 eventide_status open_source(eventide_source** opened, Arguments&&... arguments) {
-    given(opened, "a place for the source") = nullptr;
     *opened = new eventide_source{std::make_unique<Opened>(std::forward<Arguments>(arguments)...)};
     return EVENTIDE_OK;
 }
@@ -61,6 +60,7 @@ eventide_status eventide_recording_open_with(const char* path,
                                              const eventide_callbacks* callbacks,
                                              eventide_source** opened) {
     return c_call([&] {
+        given(opened, "a place for the source") = nullptr;
         const std::string name = &given(path, "a recording");
         const auto whole = filled_in(eventide_recording_options{}, options, "recording options");
         ReaderOptions chosen{text_or_none(whole.format), whole.width, whole.height};
@@ -79,6 +79,7 @@ eventide_status eventide_camera_open_with(const char* name, const char* settings
                                           const eventide_callbacks* callbacks,
                                           eventide_source** opened) {
     return c_call([&] {
+        given(opened, "a place for the source") = nullptr;
         const std::string camera = &given(name, "a camera");
         CameraSettings chosen{text_or_none(settings), reconnect != 0};
         call_back(whole_callbacks(callbacks), camera, chosen);
@@ -113,13 +114,11 @@ int eventide_source_height(const eventide_source* source) {
 eventide_status eventide_reconstructor_open_for(const eventide_source* source, const char* model,
                                                 const eventide_options* options,
                                                 eventide_reconstructor** opened) {
-    const eventide_status found = c_call([&] {
-        given(source, "a source");
-        return EVENTIDE_OK;
+    return c_call([&] {
+        given(opened, "a place for the reconstructor") = nullptr;
+        const SensorInfo& sensor = given(source, "a source").it->info();
+        return eventide_reconstructor_open(model, sensor.width, sensor.height, options, opened);
     });
-    if (found != EVENTIDE_OK) return found;
-    return eventide_reconstructor_open(model, eventide_source_width(source),
-                                       eventide_source_height(source), options, opened);
 }
 
 eventide_status eventide_read(eventide_source* source, const eventide_event** events,

@@ -1,12 +1,12 @@
 // What frames are judged by, behind the public face.
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/metrics/image_measures.h"
 #include "src/metrics/lpips.h"
 #include "src/metrics/uncertainty.h"
 
 #include <eventide/simulation.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -31,21 +31,36 @@ std::string PerceptualDistance::name() const {
     return impl_->lpips().name();
 }
 
+namespace {
+
+void refuse_not_finite(const Array2<float>& plane, const char* name) {
+    for (const float v : plane.values())
+        if (!std::isfinite(v))
+            throw Error(ErrorKind::usage, std::string{name} + ": expected finite numbers, found " +
+                                              std::to_string(v));
+}
+
+}  // namespace
+
 double PerceptualDistance::between(const Array2<float>& a, const Array2<float>& b) const {
     if (a.width() != b.width() || a.height() != b.height())
-        throw Error(ErrorKind::usage,
-                    "LPIPS: expected images of one size, found " + std::to_string(a.width()) + "x" +
-                        std::to_string(a.height()) + " and " + std::to_string(b.width()) + "x" +
-                        std::to_string(b.height()));
+        throw Error(ErrorKind::usage, "LPIPS: expected images of one size, found " +
+                                          size_text(a.width(), a.height()) + " and " +
+                                          size_text(b.width(), b.height()));
+    refuse_not_finite(a, "LPIPS, first image");
+    refuse_not_finite(b, "LPIPS, second image");
     const Lpips& lpips = impl_->lpips();
     return lpips.distance(lpips.features(a), lpips.features(b));
 }
 
 namespace {
 
-void refuse_nan(const Array2<float>& plane, const char* name) {
-    if (std::ranges::any_of(plane.values(), [](float v) { return std::isnan(v); }))
-        throw Error(ErrorKind::usage, std::string{name} + ": expected numbers, found NaN");
+void refuse_other_size(const Array2<float>& plane, const char* name,
+                       const Array2<float>& intensity) {
+    if (plane.width() != intensity.width() || plane.height() != intensity.height())
+        throw Error(ErrorKind::usage, std::string{name} + ": expected the size of intensity, " +
+                                          size_text(intensity.width(), intensity.height()) +
+                                          ", found " + size_text(plane.width(), plane.height()));
 }
 
 void refuse_below_zero(const Array2<float>& sigma) {
@@ -59,9 +74,11 @@ void refuse_below_zero(const Array2<float>& sigma) {
 
 FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                       const Array2<float>& truth, const PerceptualDistance* lpips) {
-    refuse_nan(intensity, "intensity");
-    refuse_nan(sigma, "sigma");
-    refuse_nan(truth, "truth");
+    refuse_other_size(truth, "truth", intensity);
+    if (!sigma.empty()) refuse_other_size(sigma, "sigma", intensity);
+    refuse_not_finite(intensity, "intensity");
+    refuse_not_finite(sigma, "sigma");
+    refuse_not_finite(truth, "truth");
     refuse_below_zero(sigma);
     const Array2<float> shown = clipped(intensity);
     FrameMeasures measures;

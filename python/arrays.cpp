@@ -12,6 +12,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -145,11 +146,14 @@ Array2<float> plane_of(const py::array& array, const char* what) {
     if (array.ndim() != 2)
         throw Error(ErrorKind::usage, std::string{what} + ": expected an array [y, x], found " +
                                           std::to_string(array.ndim()) + " dimensions");
+    const char kind = array.dtype().kind();
+    if (kind != 'f' && kind != 'b')
+        throw Error(ErrorKind::usage, std::string{what} +
+                                          ": expected floats, 0 black to 1 white, found " +
+                                          std::string(py::str(array.dtype())));
     const auto values =
         py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!values)
-        throw Error(ErrorKind::usage, std::string{what} + ": expected numbers, found " +
-                                          std::string(py::str(array.dtype())));
+    if (!values) throw std::bad_alloc();
     Array2<float> plane(int(values.shape(0)), int(values.shape(1)));
     std::copy_n(values.data(), plane.values().size(), plane.values().begin());
     return plane;
@@ -167,18 +171,21 @@ ReferenceImage image_of(const py::array& array) {
     refuse_mask(array, "image");
     const char kind = array.dtype().kind();
     const auto size = array.dtype().itemsize();
-    const bool is_grey = array.ndim() == 2, is_colour = array.ndim() == 3 && array.shape(2) == 3;
-    if (kind != 'u' || size > 2 || !(is_grey || is_colour) || array.shape(0) > kLargestSensorSide ||
-        array.shape(1) > kLargestSensorSide)
+    const auto is_side = [&](int axis) {
+        return array.shape(axis) >= 1 && array.shape(axis) <= kLargestSensorSide;
+    };
+    const py::ssize_t channels = array.ndim() == 3 ? array.shape(2) : 1;
+    const bool is_colour = array.ndim() == 3 && (channels == 3 || channels == 4);
+    if (kind != 'u' || size > 2 || !(array.ndim() == 2 || is_colour) || !is_side(0) || !is_side(1))
         throw Error(ErrorKind::usage,
-                    "image: expected uint8 or uint16 [y, x] or [y, x, 3] of at most " +
+                    "image: expected uint8 or uint16 [y, x], [y, x, 3] or [y, x, 4] of 1 to " +
                         std::to_string(kLargestSensorSide) + " px each way, found " +
                         std::string(py::str(array.dtype())) + " of shape " +
                         std::string(py::str(array.attr("shape"))));
     const auto values =
         py::array_t<std::uint16_t, py::array::c_style | py::array::forcecast>::ensure(array);
     ReferenceImage image;
-    image.channels = is_colour ? 3 : 1;
+    image.channels = int(channels);
     image.pixels = {int(array.shape(0)), int(array.shape(1)) * image.channels};
     const unsigned scale = size == 1 ? 257 : 1;
     std::ranges::transform(values.data(), values.data() + values.size(),

@@ -30,7 +30,8 @@ pybind11::array_t<float> array_of(const Array2<float>& plane, pybind11::handle o
 /// An array that owns these pixels, [y][x]; nothing is copied.
 pybind11::array_t<float> array_of(Array2<float> plane);
 
-/// A copy of a plane of numbers of any kind. Throws Error (usage) naming `what` for other shapes.
+/// A copy of a plane of floats or truths. Throws Error (usage) naming `what` for other arrays, as
+/// those of 0 to 255.
 Array2<float> plane_of(const pybind11::array& array, const char* what);
 
 /// [y][x] or [y][x][channel].

@@ -20,7 +20,7 @@ void add_measures(py::module_& module) {
             "between",
             [](const PerceptualDistance& lpips, const py::array& a, const py::array& b) {
                 const Array2<float> first = plane_of(a, "a"), second = plane_of(b, "b");
-                const py::gil_scoped_release released;
+                const Unlocked unlocked;
                 return lpips.between(first, second);
             },
             py::arg("a"), py::arg("b"), "0 for equal images, about .7 for unlike ones.");
@@ -34,7 +34,7 @@ void add_measures(py::module_& module) {
             if (!sigma.is_none()) doubt = plane_of(sigma.cast<py::array>(), "sigma");
             FrameMeasures m;
             {
-                const py::gil_scoped_release released;
+                const Unlocked unlocked;
                 m = measure(shown, doubt, expected, lpips);
             }
             py::dict measures;
@@ -49,7 +49,8 @@ void add_measures(py::module_& module) {
         },
         py::arg("intensity"), py::arg("truth"), py::arg("sigma") = py::none(),
         py::arg("lpips") = static_cast<PerceptualDistance*>(nullptr),
-        "How far a frame is from the truth (mse, ssim, both after a fit of gain and offset), and "
+        "How far a frame is from the truth, both floats [y, x], 0 black to 1 white (mse, ssim, "
+        "both after a fit of gain and offset), and "
         "whether sigma knew (picp80, .8 is right; log_likelihood); None where there is no sigma, "
         "or for lpips no PerceptualDistance.");
 }

@@ -1,6 +1,8 @@
 // What the library tells people, in Python.
 #pragma once
 
+#include "python/lock.h"
+
 #include <pybind11/pybind11.h>
 
 #include <string>
@@ -17,10 +19,12 @@ inline pybind11::object text_of(std::string_view words) {
 /// To the logger "eventide", of a library that works without Python's lock. Throws what a handler
 /// of it, or of a signal meanwhile, raised.
 inline void log_warning(const std::string& words) {
-    const pybind11::gil_scoped_acquire locked;
-    const pybind11::object text = text_of(words);
-    if (!text) throw pybind11::error_already_set();
-    pybind11::module_::import("logging").attr("getLogger")("eventide").attr("warning")("%s", text);
+    with_lock([&] {
+        const pybind11::object text = text_of(words);
+        if (!text) throw pybind11::error_already_set();
+        const pybind11::object logging = pybind11::module_::import("logging");
+        logging.attr("getLogger")("eventide").attr("warning")("%s", text);
+    });
 }
 
 }  // namespace eventide::python

@@ -1,6 +1,9 @@
 // The parts of the module.
 #pragma once
 
+#include "python/call_lock.h"
+#include "python/lock.h"
+
 #include <eventide/reconstructor.h>
 
 #include <pybind11/pybind11.h>
@@ -19,16 +22,21 @@ struct Guarded {
     template <typename... Arguments>
     explicit Guarded(Arguments&&... arguments) : it(std::forward<Arguments>(arguments)...) {}
 
-    /// Runs `body(it)` without Python's lock.
+    /// Runs `body(it)` without Python's lock. Throws Error (usage) within another call of it.
     template <typename Body>
     auto with(Body body) {
-        const pybind11::gil_scoped_release released;
+        const Unlocked unlocked;
         const std::lock_guard lock{mutex};
         return body(it);
     }
+    /// For a body that only looks, also within another call of it.
+    template <typename Body>
+    auto look(Body body) {
+        return mutex.is_held_here() ? body(it) : with(body);
+    }
 
     T it;
-    std::mutex mutex;
+    CallLock mutex;
 };
 
 /// With the size of its options, which render() starts from.
@@ -46,13 +54,12 @@ inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
 /// Throws TypeError, naming what is wanted and what was found.
 template <typename T>
 T cast_to(const char* name, pybind11::handle value) {
-    try {
-        return value.cast<T>();
-    } catch (const pybind11::cast_error&) {
-        throw pybind11::type_error(std::string{name} + ": expected " +
-                                   pybind11::detail::make_caster<T>::name.text + ", found " +
-                                   std::string(pybind11::repr(value)));
-    }
+    using Caster = pybind11::detail::make_caster<T>;
+    Caster caster;
+    if (!caster.load(value, true))
+        throw pybind11::type_error(std::string{name} + ": expected " + Caster::name.text +
+                                   ", found " + std::string(pybind11::repr(value)));
+    return pybind11::detail::cast_op<T>(std::move(caster));
 }
 
 /// The options of Reconstructor by name, the others as they are. Throws Error (usage) for unknown

@@ -1,6 +1,7 @@
 // The pipeline of threads for Python: anything that can be iterated is a source, any callable a
 // sink.
 #include "python/interruptible_run.h"
+#include "python/lock.h"
 #include "python/parts.h"
 #include "python/run_source.h"
 #include "python/signals.h"
@@ -47,21 +48,22 @@ public:
 
     bool write(const Frame& frame) override {
         bool wants_more = true;
-        const auto ask = [&] { wants_more = call(frame); };
+        const auto ask = [&] { wants_more = with_lock([&] { return call(frame); }); };
         run_ != nullptr ? run_->call_there(ask) : ask();
         return wants_more;
     }
     /// Lets go of what may know the pipeline.
     void close() override {
-        const py::gil_scoped_acquire locked;
-        callable_ = {};
+        with_lock([this] { callable_ = {}; });
     }
 
 private:
     bool call(const Frame& frame) {
-        const py::gil_scoped_acquire locked;
         check_signals();
-        const py::object answer = callable_(std::make_shared<Frame>(frame));
+        const py::object shown = py::cast(std::make_shared<Frame>(frame));
+        const auto answer = py::reinterpret_steal<py::object>(
+            or_stay([&] { return PyObject_CallOneArg(callable_.ptr(), shown.ptr()); }));
+        if (!answer) throw py::error_already_set();
         py::detail::make_caster<bool> said;  // without conversion: True, False, or one of NumPy's
         return !said.load(answer, false) || bool(said);
     }
@@ -76,9 +78,9 @@ public:
                      const std::filesystem::path& model, int width, int height, double latency,
                      bool sequential, const py::kwargs& options)
         : sequential_(sequential), source_(run_source(source, width, height, sequential)) {
-        for (const py::handle sink : py::isinstance<py::sequence>(sinks)
-                                         ? py::list(sinks)
-                                         : py::list(py::make_tuple(sinks))) {
+        const bool is_list =
+            PyCallable_Check(sinks.ptr()) == 0 && py::isinstance<py::sequence>(sinks);
+        for (const py::handle sink : is_list ? py::list(sinks) : py::list(py::make_tuple(sinks))) {
             if (PyCallable_Check(sink.ptr()) == 0)
                 throw py::type_error("sinks: expected a callable, or a list of them, found " +
                                      py::repr(sink).cast<std::string>());
@@ -94,19 +96,19 @@ public:
         how.frames = options_of(options);
         how.latency = std::chrono::microseconds{std::llround(1e6 * latency)};
         how.sequential = sequential;
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         pipeline_ = std::make_unique<EventPipeline>(*source_, all, model.string(), how);
     }
 
     /// Sinks are called here, and signals heard: the library's part of it has a thread of its own.
     void run() {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         const Run run{*source_};
         if (sequential_) return pipeline_->run();
         interruptible_.run([this] { pipeline_->run(); }, [this] { pipeline_->stop(); });
     }
     void stop() {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         pipeline_->stop();
     }
     std::map<std::string, std::uint64_t> counters() const {

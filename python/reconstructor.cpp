@@ -45,7 +45,7 @@ std::unique_ptr<GuardedReconstructor> make(const std::filesystem::path& model, i
         .self_ensemble = self_ensemble,
         .reset_on_gap = reset_on_gap,
         .allow_silence = allow_silence};
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return std::make_unique<GuardedReconstructor>(model.string(), width, height, options);
 }
 
@@ -133,7 +133,8 @@ void add_events_in(Class& it) {
             "push_image", &push_image, py::arg("t"), py::arg("image"),
             py::arg("exposure") = py::none(), py::arg("at") = std::pair{0, 0},
             "An image that the camera took beside its events, before the events that follow it: "
-            "uint8 or uint16 [y, x], or [y, x, 3] in BGR. t (us) is the middle of its exposure, "
+            "uint8 or uint16 [y, x], [y, x, 3] in BGR or [y, x, 4] in BGRA. t (us) is the middle "
+            "of its exposure, "
             "exposure its begin and end, at (x, y) its upper left corner in the sensor. Frames are "
             "corrected by it. read_into() of a Reader or Camera does this by itself.")
         .def(

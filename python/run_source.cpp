@@ -2,6 +2,7 @@
 #include "python/run_source.h"
 
 #include "python/arrays.h"
+#include "python/lock.h"
 #include "python/parts.h"
 #include "python/signals.h"
 #include "python/sources.h"
@@ -115,16 +116,26 @@ public:
     /// Lets go of what may know the pipeline: Python does not see such a circle.
     // NOLINTNEXTLINE(bugprone-exception-escape): as in stop().
     void end() noexcept override {
-        const py::gil_scoped_acquire locked;
-        events_ = source_ = {};
+        with_lock([this] { events_ = source_ = {}; });
     }
 
     bool read(Batch& batch) override {
-        const py::gil_scoped_acquire locked;
         batch.clear();
         gap_before_ = false;
-        const auto events =
-            py::reinterpret_steal<py::object>(PyIter_Next(events_.ptr()));  // null at the end
+        return with_lock([&] { return read_on(batch); });
+    }
+
+    /// Without Python's lock, which may fail, nothing could be told anyone.
+    // NOLINTNEXTLINE(bugprone-exception-escape)
+    void stop() noexcept override {
+        with_lock([this] { ask_to_stop(); });
+    }
+
+private:
+    /// With Python's lock, as all below.
+    bool read_on(Batch& batch) {
+        const auto events = py::reinterpret_steal<py::object>(
+            or_stay([&] { return PyIter_Next(events_.ptr()); }));  // null at the end
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
         if (const py::object clock = attribute_of(source_, "clock"); !clock.is_none())
             clock_ = from_us(cast_to<std::int64_t>("clock", clock));
@@ -136,10 +147,7 @@ public:
         return true;
     }
 
-    /// Without Python's lock, which may fail, nothing could be told anyone.
-    // NOLINTNEXTLINE(bugprone-exception-escape)
-    void stop() noexcept override {
-        const py::gil_scoped_acquire locked;
+    void ask_to_stop() {
         try {
             if (!source_) return;
             if (const py::object stop = attribute_of(source_, "stop"); !stop.is_none()) stop();
@@ -148,7 +156,6 @@ public:
         }
     }
 
-private:
     /// As Reader.images gives them.
     static void append_images(const py::object& images, std::vector<ReferenceImage>& into) {
         using TimeAndPixels = std::pair<std::int64_t, py::array>;

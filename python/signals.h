@@ -1,6 +1,8 @@
 // Ctrl-C, where C++ works for long without a line of Python between.
 #pragma once
 
+#include "python/lock.h"
+
 #include <pybind11/pybind11.h>
 
 namespace eventide::python {
@@ -12,8 +14,7 @@ inline void check_signals() {
 
 /// The same of a library that works without Python's lock.
 inline void hear_signals() {
-    const pybind11::gil_scoped_acquire locked;
-    check_signals();
+    with_lock(check_signals);
 }
 
 }  // namespace eventide::python

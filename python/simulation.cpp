@@ -43,7 +43,7 @@ void add_simulation(py::module_& module) {
         .def(py::init([](std::string scene, std::pair<int, int> size, double seconds,
                          std::uint64_t seed, double truths_per_second, double truth_scale,
                          std::filesystem::path textures) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  SimulationOptions options;
                  options.scene = std::move(scene);
                  options.seed = seed;

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -124,10 +125,10 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
         .def_property_readonly(
             "sensor", [](Source<T>& s) { return s.it.info().name; }, "its name; may be empty")
         .def_property_readonly(
-            "clock", [](Source<T>& s) { return us_of(s.with([&](T&) { return s.told().clock; })); },
+            "clock", [](Source<T>& s) { return us_of(s.look([&](T&) { return s.told().clock; })); },
             "us, the newest time told so far, or None")
         .def_property_readonly(
-            "damaged", [](Source<T>& s) { return s.with([&](T&) { return s.told().damaged; }); },
+            "damaged", [](Source<T>& s) { return s.look([&](T&) { return s.told().damaged; }); },
             "places where bytes made no sense, so far");
     return made;
 }
@@ -139,7 +140,7 @@ void add_reader(py::module_& module) {
         "be guessed is logged, too, as warnings of the logger \"eventide\".")
         .def(py::init([](const std::filesystem::path& path, std::string format, int width,
                          int height, std::string stream) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<Source<EventReader>>(
                      path.string(), ReaderOptions{std::move(format), width, height, hear_signals,
                                                   log_warning, std::move(stream)});
@@ -182,7 +183,7 @@ void add_camera(py::module_& module) {
         "passed over, or is waited for, are warnings of the logger \"eventide\".")
         .def(py::init([](const std::string& name, const std::filesystem::path& settings,
                          bool reconnect) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<Source<EventCamera>>(
                      name, CameraSettings{settings, reconnect, hear_signals, log_warning});
              }),
@@ -198,17 +199,32 @@ void add_camera(py::module_& module) {
             "From any thread: iteration ends soon.");
 }
 
+/// None once a with block was left by an exception.
+struct GuardedWriter : Guarded<std::optional<EventWriter>> {
+    using Guarded::Guarded;
+
+    template <typename Body>
+    void with_open(Body body) {
+        with([&](std::optional<EventWriter>& writer) {
+            if (!writer)
+                throw Error(ErrorKind::usage,
+                            "expected a recording that is being written, found one that was given "
+                            "up");
+            body(*writer);
+        });
+    }
+};
+
 void add_writer(py::module_& module) {
-    using GuardedWriter = Guarded<EventWriter>;
-    const auto finish = [](GuardedWriter& w) { w.with([](EventWriter& it) { it.finish(); }); };
+    const auto finish = [](GuardedWriter& w) { w.with_open([](EventWriter& it) { it.finish(); }); };
     py::class_<GuardedWriter>(module, "Writer",
                               "A recording being written; it appears whole, with finish() or at "
-                              "the end of a with block.")
+                              "the end of a with block. Of one left by an exception nothing stays.")
         .def(py::init([](const std::filesystem::path& path, int width, int height,
                          std::string format, bool overwrite) {
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return std::make_unique<GuardedWriter>(
-                     path.string(), SensorInfo{"", "", "", width, height},
+                     std::in_place, path.string(), SensorInfo{"", "", "", width, height},
                      WriterOptions{std::move(format), overwrite, hear_signals});
              }),
              py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",
@@ -218,14 +234,15 @@ void add_writer(py::module_& module) {
             [](GuardedWriter& w, const py::array& events) {
                 std::vector<Event> all;
                 append_events(events, all);
-                w.with([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
+                w.with_open([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
             },
             py::arg("events"), "Events in order of time, which follow the ones before.")
         .def("finish", finish, "Ends the recording and shows the file.")
         .def("__enter__", [](const py::object& self) { return self; })
         .def("__exit__", [finish](GuardedWriter& w, const py::object& type, const py::object&,
                                   const py::object&) {
-            if (type.is_none()) finish(w);
+            if (type.is_none()) return finish(w);
+            w.with([](std::optional<EventWriter>& it) { it.reset(); });
         });
 }
 

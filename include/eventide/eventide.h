@@ -4,7 +4,8 @@
  *
  * Functions that can fail return an eventide_status; eventide_error_message() then says what was
  * expected and what was found. Nothing is thrown. A handle is used by one thread at a time,
- * different handles by as many as there are. NULL for a handle is refused, but may be closed. */
+ * different handles by as many as there are. NULL for a handle is refused, but may be closed, and
+ * is what `*opened` becomes where nothing is opened. */
 #ifndef EVENTIDE_EVENTIDE_H
 #define EVENTIDE_EVENTIDE_H
 
@@ -108,7 +109,7 @@ typedef struct eventide_reconstructor eventide_reconstructor;
 
 /** `model`: a name ("default", "small", "thesis") or a safetensors file; names are looked for in
  * $EVENTIDE_MODELS, then where the library is installed. The sensor is 1 to 4096 px each way.
- * `options` may be NULL: the defaults. `*opened` is set where EVENTIDE_OK is returned. */
+ * `options` may be NULL: the defaults. */
 EVENTIDE_API eventide_status eventide_reconstructor_open(const char* model, int width, int height,
                                                          const eventide_options* options,
                                                          eventide_reconstructor** opened);

@@ -84,8 +84,8 @@ protected:
 struct PipelineOptions {
     /// As in Reconstructor. `threads` are the network's; the pipeline has four of its own.
     ReconstructorOptions frames{};
-    /// Of a live source: what is left out, and counted, so that frames are no later than this, at
-    /// most 10^6 s; 0: nothing. Any other source waits.
+    /// Of a live source: work is left out, and counted, so that frames are no later than this, at
+    /// most 10^6 s; 0: only what the buffers have no room for. Any other source waits.
     std::chrono::microseconds latency{250'000};
     bool sequential = false;  ///< all on the caller's thread; the frames are the same
 };

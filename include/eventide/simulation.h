@@ -82,8 +82,8 @@ public:
     /// "LPIPS-Squeeze" or "LPIPS-Alex": the two give different numbers.
     std::string name() const;
 
-    /// 0 for equal images; about .1 similar, .7 unlike. [y][x] from 0 to 1, of one size, at least
-    /// 17 px each way (Squeeze) or 31 px (Alex). Throws Error (usage) else.
+    /// 0 for equal images; about .1 similar, .7 unlike. [y][x], 0 black to 1 white, finite, of one
+    /// size, at least 17 px each way (Squeeze) or 31 px (Alex). Throws Error (usage) else.
     double between(const Array2<float>& a, const Array2<float>& b) const;
 
 private:
@@ -109,8 +109,8 @@ struct FrameMeasures {
 };
 
 /// `intensity` is clipped to 0..1 first; `sigma` may be empty and is nowhere below 0, `lpips` may
-/// be null. [y][x], without NaN, of one size, at least 11 px each way, and what `lpips` wants.
-/// Throws Error (usage) else.
+/// be null. [y][x], 0 black to 1 white, finite, of one size, at least 11 px each way, and what
+/// `lpips` wants. Throws Error (usage) else.
 EVENTIDE_API FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                                    const Array2<float>& truth,
                                    const PerceptualDistance* lpips = nullptr);

@@ -257,6 +257,8 @@ void OutputFile::forget_new_file() {
 }
 
 void refuse_existing(const fs::path& path, bool overwrite) {
+    if (path.empty())
+        throw Error(ErrorKind::usage, "output: expected the name of a file, found none");
     std::error_code none;
     const auto status = fs::status(path, none);
     if (fs::is_directory(status))

@@ -93,8 +93,8 @@ private:
     bool begun_ = false;            // it got a byte
 };
 
-/// Throws Error (usage) when `path` is a folder, or a file with something in it and `overwrite` is
-/// not set: for a word early in long work, since OutputFile asks again.
+/// Throws Error (usage) when `path` is empty, a folder, or a file with something in it and
+/// `overwrite` is not set: for a word early in long work, since OutputFile asks again.
 void refuse_existing(const std::filesystem::path& path, bool overwrite);
 
 /// Whether the path stands for a file that is open already: "-", /dev/stdout, /dev/fd/3.

@@ -22,9 +22,12 @@ std::string size_text(const Array2<float>& image) {
 }
 
 void need_same_size(const Array2<float>& a, const Array2<float>& b) {
-    if (a.height() != b.height() || a.width() != b.width() || a.empty())
+    if (a.height() != b.height() || a.width() != b.width())
         throw Error(ErrorKind::usage, "two images to compare: expected the same size, found " +
                                           size_text(a) + " and " + size_text(b));
+    if (a.empty())
+        throw Error(ErrorKind::usage,
+                    "two images to compare: expected pixels, found " + size_text(a));
 }
 
 std::array<double, kTaps> gaussian() {

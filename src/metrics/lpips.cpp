@@ -2,6 +2,7 @@
 #include "src/metrics/lpips.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/metrics/convolution.h"
 
 #include <algorithm>
@@ -153,11 +154,11 @@ Lpips::Features Lpips::features(const Array2<float>& image) const {
 Lpips::Features Lpips::features(const Array3<float>& image) const {
     if (image.height() < network_->smallest || image.width() < network_->smallest ||
         image.channels() != 3)
-        throw Error(ErrorKind::usage,
-                    name_ + ": expected 3 channels of at least " +
-                        std::to_string(network_->smallest) + " px each way, found " +
-                        std::to_string(image.channels()) + " of " + std::to_string(image.width()) +
-                        "x" + std::to_string(image.height()));
+        throw Error(ErrorKind::usage, name_ + ": expected 3 channels of at least " +
+                                          std::to_string(network_->smallest) +
+                                          " px each way, found " +
+                                          std::to_string(image.channels()) + " of " +
+                                          size_text(image.width(), image.height()));
     FeatureMap map = image;
     for (std::size_t i = 0; i < map.values().size(); ++i)
         map.values()[i] =
@@ -173,7 +174,9 @@ Lpips::Features Lpips::features(const Array3<float>& image) const {
 Array2<float> Lpips::layer_differences(const Features& a, const Features& b,
                                        std::size_t layer) const {
     if (a.height != b.height || a.width != b.width)
-        throw Error(ErrorKind::usage, name_ + ": expected two images of the same size");
+        throw Error(ErrorKind::usage, name_ + ": expected two images of the same size, found " +
+                                          size_text(a.width, a.height) + " and " +
+                                          size_text(b.width, b.height));
     const FeatureMap &fa = a.layers[layer], &fb = b.layers[layer];
     const std::vector<float>& head = network_->heads[layer];
     Array2<float> out(fa.height(), fa.width());

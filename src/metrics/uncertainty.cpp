@@ -2,6 +2,7 @@
 #include "src/metrics/uncertainty.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,11 @@ void need_same_size(const Array2<float>& mu, const Array2<float>& sigma,
         return mu.height() == other.height() && mu.width() == other.width();
     };
     if (!same(sigma) || !same(reference) || mu.empty())
-        throw Error(ErrorKind::usage, "mu, sigma and reference: expected images of one size");
+        throw Error(ErrorKind::usage,
+                    "mu, sigma and reference: expected images of one size, with pixels, found " +
+                        size_text(mu.width(), mu.height()) + ", " +
+                        size_text(sigma.width(), sigma.height()) + " and " +
+                        size_text(reference.width(), reference.height()));
 }
 
 /// Calls use(z, sigma) for each pixel. What is certain and right is as near as can be: z is 0.

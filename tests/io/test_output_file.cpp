@@ -214,6 +214,7 @@ TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
 }
 
 TEST(OutputFile, SaysWhyItCannotBeMade) {
+    EXPECT_EQ(refusal("", {}), "usage: output: expected the name of a file, found none");
     EXPECT_EQ(refusal("/nowhere/a", {}),
               "failed: /nowhere/a: cannot be created: No such file or directory");
 }

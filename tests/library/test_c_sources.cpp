@@ -32,10 +32,54 @@ TEST_F(CSources, ReadsTheFramesOfASourceOneByOne) {
     EXPECT_EQ(eventide_read_frame(nullptr, reconstructor_, &f), EVENTIDE_USAGE);
     EXPECT_TRUE(said("expected a source, found NULL"));
     EXPECT_EQ(eventide_read_frame(source, nullptr, &f), EVENTIDE_USAGE);
-    eventide_source_close(source);
-    EXPECT_EQ(eventide_reconstructor_open_for(nullptr, model().c_str(), &options, nullptr),
+    eventide_reconstructor* none = nullptr;
+    EXPECT_EQ(eventide_reconstructor_open_for(nullptr, model().c_str(), &options, &none),
               EVENTIDE_USAGE);
     EXPECT_TRUE(said("expected a source, found NULL"));
+    EXPECT_EQ(eventide_reconstructor_open_for(source, model().c_str(), &options, nullptr),
+              EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected a place for the reconstructor, found NULL"));
+    eventide_source_close(source);
+}
+
+/// So that a program may close all it has at its end, whatever was opened.
+TEST_F(CSources, WhatIsNotOpenedIsNull) {
+    open();
+    eventide_source* source = nullptr;
+    ASSERT_EQ(eventide_recording_open(recording().c_str(), nullptr, 0, 0, &source), EVENTIDE_OK);
+    const auto expect_null = [](const char* what, const auto& opens, auto* handle) {
+        EXPECT_NE(opens(&handle), EVENTIDE_OK) << what;
+        EXPECT_EQ(handle, nullptr) << what;
+    };
+    const eventide_recording_options none{};  // of no size
+    const eventide_callbacks no_callbacks{};
+    expect_null(
+        "no path", [](auto* to) { return eventide_recording_open(nullptr, nullptr, 0, 0, to); },
+        source);
+    expect_null(
+        "options",
+        [&](auto* to) {
+            return eventide_recording_open_with(recording().c_str(), &none, nullptr, to);
+        },
+        source);
+    expect_null(
+        "callbacks",
+        [&](auto* to) {
+            return eventide_camera_open_with("sim:demo", nullptr, 0, &no_callbacks, to);
+        },
+        source);
+    expect_null(
+        "no camera", [](auto* to) { return eventide_camera_open(nullptr, nullptr, 0, to); },
+        source);
+    expect_null(
+        "no source",
+        [](auto* to) { return eventide_reconstructor_open_for(nullptr, "small", nullptr, to); },
+        reconstructor_);
+    expect_null(
+        "no model",
+        [](auto* to) { return eventide_reconstructor_open(nullptr, 64, 48, nullptr, to); },
+        reconstructor_);
+    eventide_source_close(source);
 }
 
 TEST_F(CSources, CamerasPushWhatTheyRead) {

@@ -52,6 +52,13 @@ protected:
         succeed({from_text, temp_ / "events.txt", temp_ / "ours"},
                 {.environment = {{"EVENTIDE_MODELS", prefix() + "/share/eventide/models"}}});
         expect_ours_of_run({"events.txt"});
+        write_text(temp_ / "damaged.txt", "64 48\n0.1 1 2 1\n0.2 one 2 1\n0.3 1 2 1\n");
+        const Result damaged =
+            run({from_text, temp_ / "damaged.txt", temp_ / "ours"},
+                {.environment = {{"EVENTIDE_MODELS", prefix() + "/share/eventide/models"}}});
+        EXPECT_EQ(damaged.exit_code, 1);
+        EXPECT_EQ(damaged.error, temp_ / "damaged.txt" +
+                                     ": expected events \"t x y p\", found a line that is none\n");
         const std::string loaded = libraries_of(from_text);
         for (const char* const package : {"libopencv", "libusb", "liblz4", "libeventide.so"})
             EXPECT_EQ(loaded.find(package), std::string::npos) << loaded;

@@ -57,22 +57,28 @@ TEST(Measures, SayWhatIsWrongWithAFrame) {
     EXPECT_LT(alone.ssim, alone.affine_ssim);
     EXPECT_FALSE(alone.picp80.has_value());
     EXPECT_NEAR(measure(shown, sigma, truth).picp80.value_or(0), .5, .01);
-    error_of([&] { measure(shown, sigma, Array2<float>(20, 31)); });
+    const Array2<float> narrow(20, 31);
+    EXPECT_EQ(error_of([&] { measure(shown, sigma, narrow); }),
+              "truth: expected the size of intensity, 30x20, found 31x20");
+    EXPECT_EQ(error_of([&] { measure(shown, narrow, truth); }),
+              "sigma: expected the size of intensity, 30x20, found 31x20");
     sigma(3, 4) = -.5F;
     EXPECT_NE(error_of([&] { measure(shown, sigma, truth); }).find("sigma: expected 0 or more"),
               std::string::npos);
 }
 
 TEST(Measures, RefuseWhatIsNoNumber) {
-    // Clipped, it would be black, and here as right as can be.
+    // Clipped, NaN would be black, and here as right as can be.
     const Array2<float> black(20, 30);
     Array2<float> broken = black;
-    broken(3, 4) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(error_of([&] { measure(broken, {}, black); }),
-              "intensity: expected numbers, found NaN");
-    EXPECT_EQ(error_of([&] { measure(black, broken, black); }),
-              "sigma: expected numbers, found NaN");
-    EXPECT_EQ(error_of([&] { measure(black, {}, broken); }), "truth: expected numbers, found NaN");
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float number : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
+        broken(3, 4) = number;
+        const std::string words = ": expected finite numbers, found " + std::to_string(number);
+        EXPECT_EQ(error_of([&] { measure(broken, {}, black); }), "intensity" + words);
+        EXPECT_EQ(error_of([&] { measure(black, broken, black); }), "sigma" + words);
+        EXPECT_EQ(error_of([&] { measure(black, {}, broken); }), "truth" + words);
+    }
 }
 
 TEST(Measures, OfLpipsAreThoseOfItsWeights) {
@@ -95,6 +101,12 @@ TEST(Measures, OfLpipsAreThoseOfItsWeights) {
     EXPECT_EQ(measure(noisy, {}, truth).lpips, std::nullopt);
     EXPECT_NE(error_of([&] { lpips.between(truth, Array2<float>(40, 49)); }).find("50x40"),
               std::string::npos);
+    // The network's layers make 0 of it, and a distance that looks like one.
+    noisy(3, 4) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(error_of([&] { lpips.between(noisy, truth); }),
+              "LPIPS, first image: expected finite numbers, found nan");
+    EXPECT_EQ(error_of([&] { lpips.between(truth, noisy); }),
+              "LPIPS, second image: expected finite numbers, found nan");
 }
 
 }  // namespace

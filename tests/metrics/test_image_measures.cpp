@@ -2,6 +2,7 @@
 #include "src/core/error.h"
 #include "src/metrics/image_measures.h"
 #include "tests/metrics/images.h"
+#include "tests/support/error_of.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,8 @@
 
 namespace eventide {
 namespace {
+
+using test::error_of;
 
 TEST(ImageMeasures, FindNothingBetweenAnImageAndItself) {
     const auto a = test_image(40, 50, 1);
@@ -61,14 +64,24 @@ TEST(StructuralSimilarity, IsScikitImages) {
     }
 }
 
+TEST(StructuralSimilarity, OfFlatImagesIsThatOfTheirMeans) {
+    const auto flat = [](float v) {
+        return mapped(Array2<float>(11, 11), [v](float) { return v; });
+    };
+    EXPECT_NEAR(structural_similarity(flat(0), flat(.01F)), .5, 1e-6) << "K1 = .01";
+}
+
 TEST(StructuralSimilarity, RefusesImagesItsWindowDoesNotFit) {
     for (const auto& small : {test_image(10, 50, 1), test_image(50, 10, 1)})
         EXPECT_THROW(structural_similarity(small, small), Error);
 }
 
-TEST(ImageMeasures, RefuseImagesOfTwoSizes) {
-    EXPECT_THROW(mean_squared_error(test_image(20, 20, 1), test_image(20, 21, 1)), Error);
+TEST(ImageMeasures, RefuseImagesOfTwoSizesAndOfNone) {
+    EXPECT_EQ(error_of([] { mean_squared_error(test_image(20, 20, 1), test_image(20, 21, 1)); }),
+              "two images to compare: expected the same size, found 20x20 and 21x20");
     EXPECT_THROW(structural_similarity(test_image(20, 20, 1), test_image(21, 20, 1)), Error);
+    EXPECT_EQ(error_of([] { mean_squared_error(Array2<float>(0, 5), Array2<float>(0, 5)); }),
+              "two images to compare: expected pixels, found 5x0");
 }
 
 TEST(AffineFit, UndoesGainAndOffset) {
@@ -85,6 +98,16 @@ TEST(AffineFit, BringsOutWhatIsFaint) {
     const auto faint = mapped(truth, [](float v) { return .4F + .002F * v; });
     EXPECT_NEAR(affine_fit(faint, truth).gain, 500, .5);
     EXPECT_NEAR(*correlation(spread(faint, truth)), 1, 1e-4);
+}
+
+TEST(AffineFit, TakesRoundingForNoContrast) {
+    const auto truth = test_image(30, 40, 3);
+    const auto contrast = [&](float c) {
+        return mapped(truth, [c](float v) { return .4F + c * v; });
+    };
+    EXPECT_NEAR(affine_fit(contrast(2e-5F), truth).gain, 5e4, 1e3);
+    EXPECT_EQ(affine_fit(contrast(6e-8F), truth).gain, 0);
+    EXPECT_EQ(correlation(spread(truth, contrast(6e-8F))), std::nullopt);
 }
 
 TEST(AffineFit, IsNeverWorseThanTheRawImage) {
@@ -122,9 +145,11 @@ TEST(Correlation, SaysWhatAnAffineFitLeaves) {
 }
 
 TEST(Clipped, BringsAnythingIntoZeroToOne) {
-    Array2<float> image(1, 4);
+    Array2<float> image(1, 6);
     image(0, 0) = -3;
     image(0, 1) = 3;
+    image(0, 4) = -.001F;
+    image(0, 5) = 1.001F;
     image(0, 2) = std::nanf("");
     image(0, 3) = .25F;
     const auto out = clipped(image);
@@ -132,6 +157,8 @@ TEST(Clipped, BringsAnythingIntoZeroToOne) {
     EXPECT_EQ(out(0, 1), 1);
     EXPECT_EQ(out(0, 2), 0);
     EXPECT_EQ(out(0, 3), .25F);
+    EXPECT_EQ(out(0, 4), 0);
+    EXPECT_EQ(out(0, 5), 1);
 }
 
 TEST(Correlation, IsOneForALineMinusOneForAFallingOneAndNothingForAConstant) {

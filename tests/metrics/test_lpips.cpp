@@ -5,6 +5,7 @@
 #include "src/metrics/lpips.h"
 #include "tests/io/npz_writer.h"
 #include "tests/metrics/images.h"
+#include "tests/support/error_of.h"
 
 #include <gtest/gtest.h>
 
@@ -95,7 +96,9 @@ TEST_F(LpipsSqueeze, RefusesAnImageTooSmallForItsPools) {
 TEST_F(LpipsSqueeze, RefusesImagesOfTwoSizes) {
     const auto features = lpips_->features(test_image(40, 40, 1));
     for (const auto& other : {test_image(40, 44, 1), test_image(44, 40, 1)})
-        EXPECT_THROW(lpips_->distance(features, lpips_->features(other)), Error);
+        EXPECT_EQ(test::error_of([&] { lpips_->distance(features, lpips_->features(other)); }),
+                  "LPIPS-Squeeze: expected two images of the same size, found 40x40 and " +
+                      std::to_string(other.width()) + "x" + std::to_string(other.height()));
 }
 
 /// A difference at one of 15 x 15 places of the first layer alone, brought to 64 x 64 px: centres
@@ -160,6 +163,10 @@ TEST(LpipsAlex, IsReadFromTheSameLayout) {
     EXPECT_EQ(a.layers[2].height(), 3);
     EXPECT_EQ(lpips.distance(a, a), 0);
     EXPECT_GT(lpips.distance(a, b), 0);
+    EXPECT_NO_THROW(lpips.features(test_image(31, 31, 1)));
+    EXPECT_THROW(lpips.features(test_image(30, 31, 1)), Error);
+    EXPECT_THROW(lpips.features(test_image(31, 30, 1)), Error);
+    EXPECT_THROW(lpips.features(Array3<float>(64, 64, 1)), Error) << "of one channel";
     expect_bilinear_map(lpips, a);
 }
 
@@ -205,6 +212,22 @@ TEST(Convolution, IsTheSumOverItsNeighbourhood) {
                     ASSERT_NEAR(out(y, x, o), std::max(0., sum), 1e-4);
                 }
     }
+}
+
+TEST(Convolution, RefusesWeightsOfAnotherShape) {
+    const fs::path path = fs::path{testing::TempDir()} / "other_shape.npz";
+    NpzWriter writer;
+    writer.add("c.weight", {2, 3, 1, 1}, std::vector<float>(6), false);
+    writer.add("c.bias", {2}, std::vector<float>(2), false);
+    writer.write(path);
+    const NpzFile file{path};
+    EXPECT_NO_THROW((Convolution{file, "c", {.in = 3, .out = 2}}));
+    EXPECT_EQ(
+        test::error_of([&] { Convolution(file, "c", {.in = 2, .out = 2}); }, ErrorKind::input),
+        path.string() + ": array 'c.weight': expected shape [2, 2, 1, 1], found [2, 3, 1, 1]");
+    EXPECT_EQ(
+        test::error_of([&] { Convolution(file, "c", {.in = 3, .out = 1}); }, ErrorKind::input),
+        path.string() + ": array 'c.bias': expected shape [1], found [2]");
 }
 
 TEST(MaxPool, TakesAWindowOverTheEdgeOnlyWhenItRoundsUp) {

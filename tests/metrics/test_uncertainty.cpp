@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "tests/metrics/images.h"
+#include "tests/support/error_of.h"
 
 #include <gtest/gtest.h>
 
@@ -99,6 +100,38 @@ TEST(Reliability, OfTheTruthLiesOnTheDiagonal) {
     }
 }
 
+/// Where the standard normal distribution has reached `share`.
+double quantile(double share) {
+    double low = -4, high = 4;
+    for (int i = 0; i < 60; ++i) {
+        const double z = (low + high) / 2;
+        (std::erfc(-z / std::numbers::sqrt2) / 2 < share ? low : high) = z;
+    }
+    return low;
+}
+
+TEST(Reliability, HasTheQuantilesOfAGaussian) {
+    const Array2<float> mu(1, 1);
+    Array2<float> sigma(1, 1), truth(1, 1);
+    sigma(0, 0) = 1;
+    const auto of_one_at = [&](double z) {
+        truth(0, 0) = float(z);
+        Reliability diagram;
+        diagram.add(mu, sigma, truth);
+        return diagram;
+    };
+    for (int i = 0; i < Reliability::kLevels; ++i) {
+        const double below = quantile(Reliability::level(i)),
+                     inside = quantile(.5 + Reliability::level(i) / 2);
+        EXPECT_EQ(of_one_at(below - 1e-6).below(i), 1) << i;
+        EXPECT_EQ(of_one_at(below + 1e-6).below(i), 0) << i;
+        for (const int side : {-1, 1}) {
+            EXPECT_EQ(of_one_at(side * (inside - 1e-6)).inside(i), 1) << i;
+            EXPECT_EQ(of_one_at(side * (inside + 1e-6)).inside(i), 0) << i;
+        }
+    }
+}
+
 TEST(Reliability, CountsATruthDarkerThanExpectedAsBelow) {
     Array2<float> mu(1, 1), sigma(1, 1), dark(1, 1), bright(1, 1);
     mu(0, 0) = .5F;
@@ -114,7 +147,9 @@ TEST(Reliability, CountsATruthDarkerThanExpectedAsBelow) {
 TEST(Coverage, RefusesMapsOfTwoSizesAndOfNone) {
     const Array2<float> map(4, 5), other(5, 4), none;
     EXPECT_NO_THROW(coverage_80(map, map, map));
-    EXPECT_THROW(coverage_80(map, other, map), Error);
+    EXPECT_EQ(test::error_of([&] { coverage_80(map, other, map); }),
+              "mu, sigma and reference: expected images of one size, with pixels, found 5x4, 4x5 "
+              "and 5x4");
     EXPECT_THROW(coverage_80(map, map, other), Error);
     EXPECT_THROW(coverage_80(map, map, Array2<float>(4, 4)), Error);
     EXPECT_THROW(coverage_80(none, none, none), Error);

@@ -143,6 +143,42 @@ class Interrupts(RecordedTest):
             self.interrupt(lambda: writer.write(events), lambda: bytes_in(keeps) > 0)
             os.close(keeps)
 
+    def handle(self, handler):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, handler))
+
+    def test_the_handler_of_a_signal_may_ask_what_is_being_read_for_its_clock(self):
+        with self.pipe() as path:
+            keeps = os.open(path, os.O_RDWR)
+            os.write(keeps, b"64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n")
+            reader = eventide.open(path)
+            told = []
+
+            def ask(*_):
+                told.append((reader.clock, reader.damaged))
+                raise KeyboardInterrupt
+
+            self.handle(ask)
+            os.write(keeps, b"0.4 7 8 1\n")
+            self.interrupt(lambda: consume(reader), lambda: bytes_in(keeps) == 0)
+            self.assertEqual([damaged for _, damaged in told], [0])
+            os.close(keeps)
+
+    def test_the_handler_of_a_signal_may_not_write_into_what_is_being_written(self):
+        with self.pipe() as path:
+            keeps = os.open(path, os.O_RDWR)
+            writer = eventide.Writer(path, 64, 48, "text")
+            events = np.zeros(100_000, DTYPE)
+
+            def meddle(*_):
+                for again in (lambda: writer.write(events), writer.finish):
+                    with self.assertRaisesRegex(eventide.UsageError, "one call at a time, found .* within another"):
+                        again()
+                raise KeyboardInterrupt
+
+            self.handle(meddle)
+            self.interrupt(lambda: writer.write(events), lambda: bytes_in(keeps) > 0)
+            os.close(keeps)
+
     def test_a_simulation_ends(self):
         simulation = eventide.simulate("demo", size=(32, 24), seconds=1e6)
         self.interrupt(lambda: consume(simulation), lambda: simulation.clock > 100_000)

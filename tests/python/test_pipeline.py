@@ -102,6 +102,14 @@ class Pipelines(RecordedTest):
             with self.assertRaisesRegex(OSError, "camera gone"):
                 self.frames_of(failing(eventide.open(self.recording)))
 
+    def test_a_sink_that_is_a_list_besides_is_called(self):
+        class Kept(list):
+            __call__ = list.append
+
+        kept = Kept()
+        eventide.Pipeline(eventide.open(self.recording), kept, "small", **REPEATABLE).run()
+        self.assertGreater(len(kept), 25)
+
     def test_sinks_that_cannot_be_called_are_refused_before_anything_is_read(self):
         for sinks, named in ((None, "None"), ([print, 5], "5"), ("frames.mp4", "'f'")):
             with self.assertRaisesRegex(TypeError, f"sinks: expected a callable.*{named}"):
@@ -126,6 +134,84 @@ class Pipelines(RecordedTest):
             options = {"window": "10ms", "fps": "100", "noise_filter": "off", "sequential": sequential}
             eventide.Pipeline(camera, twenty, "small", **options).run()
             self.assertGreater(seen[-1], 100_000)
+
+    def test_a_live_source_of_ones_own_tells_its_clock_and_its_gaps(self):
+        class Live:
+            width, height, gap_before, clock = 64, 48, False, None
+
+            def __iter__(self):
+                for n in range(1, 31):
+                    events = np.zeros(1 if n in (1, 5) else 0, DTYPE)
+                    events["t"], self.clock, self.gap_before = 10_000 * n - 1, 10_000 * n, n == 5
+                    yield events
+
+        seen = []
+        options = {**REPEATABLE, "window": "10ms", "lookahead": 0, "noise_filter": "off", "lamp_flicker": "off"}
+        pipeline = eventide.Pipeline(Live(), seen.append, "small", sequential=True, latency=0, **options)
+        pipeline.run()
+        self.assertGreater(seen[-1].t, 280_000, "the clock goes on without events")
+        gaps = [frame.t for frame in seen if frame.gap_before]
+        self.assertEqual([30_000 < t < 60_000 for t in gaps], [True])
+        counters = pipeline.counters
+        self.assertEqual((counters["gaps"], counters["events"], counters["damaged"]), (1, 2, 0))
+        self.assertEqual(counters["frames"], len(seen))
+
+    def test_a_gap_forgets_the_scene_where_that_is_wanted(self):
+        before, after = np.array_split(self.events(), 2)
+
+        class Gap:
+            width, height, gap_before = 64, 48, False
+
+            def __iter__(self):
+                yield before
+                self.gap_before = True
+                yield after
+
+        def piped(reset_on_gap):
+            frames = []
+            options = {"sequential": True, "latency": 0, "reset_on_gap": reset_on_gap, **REPEATABLE}
+            eventide.Pipeline(Gap(), frames.append, "small", **options).run()
+            return {f.t: f.intensity.tobytes() for f in frames}  # a live source may leave out some
+
+        def one_by_one(reset_on_gap):
+            reconstructor = self.reconstructor(reset_on_gap=reset_on_gap)
+            reconstructor.push(before)
+            reconstructor.mark_gap()
+            reconstructor.push(after)
+            return {f.t: f.intensity.tobytes() for f in reconstructor.frames()}
+
+        for frames in (piped, one_by_one):
+            kept, forgotten = frames(False), frames(True)
+            others = [t for t in kept.keys() & forgotten.keys() if kept[t] != forgotten[t]]
+            self.assertGreater(len(others), 0)
+            self.assertGreater(min(others), before["t"][-1] - 10_000)
+
+    def test_a_silence_is_rendered_where_that_is_allowed(self):
+        far_apart = np.zeros(2, DTYPE)
+        far_apart["t"] = 0, 10**12  # 100 million frames
+        for allowed in (False, True):
+            seen = []
+
+            def hundred(frame):
+                seen.append(frame)
+                return len(seen) < 100
+
+            pipeline = eventide.Pipeline(
+                [far_apart], hundred, "small", width=64, height=48, allow_silence=allowed, **REPEATABLE
+            )
+            if allowed:
+                pipeline.run()
+                self.assertEqual(len(seen), 100)
+            else:
+                with self.assertRaisesRegex(eventide.InputError, "without events"):
+                    pipeline.run()
+
+    def test_events_of_no_sensor_and_no_time_are_counted(self):
+        events = np.zeros(5, DTYPE)
+        events["t"], events["x"] = [1, 2, 2**62, 4, 5], [0, 64, 0, 0, 65535]
+        pipeline = eventide.Pipeline([events], [], "small", width=64, height=48)
+        pipeline.run()
+        self.assertEqual((pipeline.counters["events"], pipeline.counters["damaged"]), (2, 3))
 
     def test_what_a_pipeline_reads_nobody_else_reads(self):
         for sequential in (False, True):
@@ -239,6 +325,48 @@ class Pipelines(RecordedTest):
             gc.collect()
             self.assertIsNone(pipeline())
 
+    def test_its_options_are_those_of_the_reconstructor(self):
+        def shown(frame):
+            return frame.t, frame.intensity.tobytes(), None if frame.sigma is None else frame.sigma.tobytes()
+
+        def frames(options):
+            frames = []
+            options = {**REPEATABLE, **options}
+            pipeline = eventide.Pipeline(
+                eventide.open(self.recording), lambda frame: frames.append(shown(frame)), "small", **options
+            )
+            pipeline.run()
+            reader, reconstructor = eventide.open(self.recording), self.reconstructor(**options)
+            self.assertEqual(frames, [shown(f) for f in eventide.read_frames(reader, reconstructor)])
+            return frames
+
+        hot = self.folder / "hot.txt"
+        hot.write_text("".join(f"{x},{y}\n" for x in range(64) for y in range(0, 48, 2)))
+        as_they_are = frames({})
+        for options in (
+            {"window": "auto"},
+            {"lookahead": 0},
+            {"fps": 50},
+            {"size": (32, 24)},
+            {"roi": (10, 20, 30, 24)},
+            {"sigma": False},
+            {"hot_pixels": hot},
+            {"noise_filter": "1ms"},
+            {"images": False},
+            {"self_ensemble": 2},
+            {"precision": "bf16"},
+        ):
+            with self.subTest(options):
+                self.assertNotEqual(frames(options), as_they_are)
+        for options, words in (
+            ({"lamp_flicker": "bananas"}, "bananas"),
+            ({"kernels": "bananas"}, "kernels: expected auto, own or onednn, found 'bananas'"),
+            ({"threads": -3}, "threads: .* found -3"),
+        ):
+            for make in (self.reconstructor, lambda **more: self.frames_of(eventide.open(self.recording), **more)):
+                with self.assertRaisesRegex(eventide.UsageError, words):
+                    make(**options)
+
     def test_what_cannot_run_is_refused(self):
         with self.assertRaisesRegex(eventide.UsageError, "width"):
             eventide.Pipeline([], print, "small")
@@ -264,6 +392,8 @@ class Pipelines(RecordedTest):
             def __iter__(self):
                 return iter([np.zeros(0, DTYPE)])
 
+        with self.assertRaisesRegex(TypeError, r"events: expected numpy.ndarray, found \(array"):
+            eventide.Pipeline(eventide.simulate("demo", (64, 48), 0.1), print, "small").run()
         with self.assertRaisesRegex(TypeError, "height: expected int, found '48'"):
             eventide.Pipeline(Source(), print, "small")
         with self.assertRaisesRegex(TypeError, "clock: expected int, found 'noon'"):

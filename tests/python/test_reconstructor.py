@@ -5,7 +5,7 @@ import unittest
 
 import eventide
 import numpy as np
-from recorded import RecordedTest
+from recorded import DTYPE, RecordedTest
 
 
 class Frames(RecordedTest):
@@ -50,17 +50,21 @@ class Frames(RecordedTest):
     def test_are_corrected_by_images_of_ones_own(self):
         still = np.full((48, 64), 200, np.uint8)
         still[10:20, 30:40] = 20
+        with_alpha = np.stack(3 * [still] + [np.full_like(still, 255)], axis=2)
+        corrected = []
         events = np.zeros(3, [("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("on", "?")])
         events["t"] = 1000, 20_000, 60_000
-        for image in (still, still.astype(np.uint16) * 257, np.stack(3 * [still], axis=2)):
+        for image in (still, still.astype(np.uint16) * 257, np.stack(3 * [still], axis=2), with_alpha):
             reconstructor = self.reconstructor()
             reconstructor.push(events[:2])
             reconstructor.push_image(15_000, image, exposure=(12_000, 18_000))
             reconstructor.push(events[2:])
             intensity, _ = reconstructor.render(reconstructor.newest())
             np.testing.assert_allclose(intensity, still / 255, atol=0.02)
+            corrected.append(intensity)
             self.assertEqual(reconstructor.counters["used_images"], 1)
-        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2)):
+        np.testing.assert_array_equal(corrected[0], corrected[1])
+        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2), still[:0], still[:, :0]):
             with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
                 reconstructor.push_image(70_000, image)
         with self.assertRaisesRegex(eventide.UsageError, "exposure_end not before exposure_begin, found 60000 us"):
@@ -179,6 +183,65 @@ class Frames(RecordedTest):
         for t in (1.5, float("nan")):
             with self.assertRaises(TypeError):
                 self.reconstructor().render(t)
+
+    def test_counters_tell_each_what_it_is_called(self):
+        def at(*times, x=5):
+            events = np.zeros(len(times), DTYPE)
+            events["t"], events["x"] = times, x
+            return events
+
+        reconstructor = self.reconstructor(noise_filter="off", lamp_flicker="off")
+        reconstructor.push(at(0))
+        reconstructor.advance(100_000)
+        reconstructor.newest()
+        reconstructor.push(at(50_000))  # late
+        reconstructor.push(at(10, 20))  # earlier
+        reconstructor.push(at(*[100_000] * 3, x=64))
+        reconstructor.push(at(*[2**62] * 4))
+        for t in range(45_000, 0, -9_000):
+            reconstructor.push(at(t), resets=True)
+        frames = len(list(reconstructor.frames()))
+        image = np.full((48, 64), 100, np.uint8)
+        for t, of_images in ((10**6, []), (1_100_000, [999_000]), (1_200_000, [*range(1000, 7000, 1000), 1_050_000])):
+            for of_image in of_images:
+                reconstructor.push_image(of_image, image)
+            reconstructor.push(at(t))
+            frames += len(list(reconstructor.frames()))
+        counters = reconstructor.counters
+        self.assertGreater(counters.pop("event_windows"), 60)
+        expected = {"late": 1, "time_backwards": 2, "off_sensor": 3, "bad_time": 4, "time_resets": 5}
+        expected |= {"dropped_images": 6, "used_images": 2, "filtered": 0, "left_out": 0}
+        self.assertEqual(counters, expected | {"events": 19, "frames": frames})
+
+    def test_an_image_of_a_part_of_the_sensor_corrects_that_part(self):
+        events = np.zeros(3, DTYPE)
+        events["t"] = 1000, 20_000, 60_000
+        part = np.full((20, 30), 200, np.uint8)
+        reconstructor = self.reconstructor(noise_filter="off")
+        reconstructor.push(events[:2])
+        reconstructor.push_image(15_000, part, at=(8, 24))
+        reconstructor.push(events[2:])
+        intensity, _ = reconstructor.render(reconstructor.newest())
+        np.testing.assert_allclose(intensity[24:44, 8:38], 200 / 255, atol=0.02)
+        self.assertLess(intensity[8:24, 38:].mean(), 0.7)
+
+    def test_tell_of_their_event_window(self):
+        events = np.zeros(4, DTYPE)
+        events["t"] = 1000, 89_000, 90_000, 95_000
+        reconstructor = self.reconstructor(noise_filter="off", lamp_flicker="off", window="10ms")
+        reconstructor.push(events[:1])
+        reconstructor.mark_gap()
+        reconstructor.push(events[1:])
+        reconstructor.finish()
+        frames = list(reconstructor.frames())
+        self.assertTrue(all(f.window[0] < f.t <= f.window[1] for f in frames[1:]))
+        self.assertTrue(all(f.window[1] - f.window[0] == 10_000 for f in frames[:-1]))
+        self.assertEqual(sorted({f.events for f in frames}), [0, 1, 2])
+        self.assertEqual({f.window for f in frames if f.gap_before}, {frames[0].window})
+        self.assertEqual(
+            [f.events == sum(f.window[0] < t <= f.window[1] for t in events["t"]) for f in frames],
+            [True] * len(frames),
+        )
 
     def test_threads_share_one_object_and_python_runs_on(self):
         reconstructor = self.reconstructor()

@@ -1,5 +1,6 @@
 """Scenes with their truth, and how far frames are from it, in Python."""
 
+import pathlib
 import subprocess
 import unittest
 
@@ -23,6 +24,13 @@ class Simulations(RecordedTest):
         shapes = {image.shape for _, images in simulation for _, image in images}
         self.assertEqual(shapes, {(47, 63)})
         self.assertEqual(simulation.clock, 20_000)
+
+    def test_another_seed_is_another_scene(self):
+        def events(seed):
+            return np.concatenate([e for e, _ in eventide.simulate(size=(32, 24), seconds=0.1, seed=seed)])
+
+        np.testing.assert_array_equal(events(5), events(5))
+        self.assertFalse(np.array_equal(events(5), events(6)))
 
     def test_what_makes_no_sense_is_refused_by_name(self):
         self.assertIn("demo", eventide.Simulation.scenes())
@@ -57,11 +65,56 @@ class Evaluation(RecordedTest):
             eventide.PerceptualDistance(self.folder / "missing")
         self.assertIsNone(eventide.evaluate(np.zeros((20, 20)), np.zeros((20, 20)))["lpips"])
 
+    def test_perceptual_distance_is_one_of_the_measures(self):
+        weights = pathlib.Path(__file__).parents[2] / "../shared/data/perceptual/lpips_squeeze_v0.1.npz"
+        if not weights.exists():
+            self.skipTest(f"no LPIPS weights: {weights}")
+        lpips = eventide.PerceptualDistance(weights)
+        self.assertEqual(lpips.name, "LPIPS-Squeeze")
+        truth = np.random.default_rng(1).random((40, 50), np.float32)
+        self.assertEqual(lpips.between(truth, truth), 0)
+        self.assertGreater(lpips.between(truth / 4, truth), 0.05)
+        self.assertEqual(eventide.evaluate(truth / 4, truth, lpips=lpips)["lpips"], lpips.between(truth / 4, truth))
+        with self.assertRaisesRegex(eventide.UsageError, "LPIPS, second image: expected finite numbers, found nan"):
+            lpips.between(truth, np.full_like(truth, np.nan))
+        with self.assertRaisesRegex(eventide.UsageError, "b: expected floats, 0 black to 1 white, found uint8"):
+            lpips.between(truth, np.zeros((40, 50), np.uint8))
+
     def test_planes_of_other_shapes_are_refused(self):
-        plane = np.zeros((20, 20))
-        for wrong in (np.zeros((20, 21)), np.zeros((5, 5)), np.zeros(20), np.zeros((20, 20, 3))):
-            with self.assertRaises(eventide.UsageError):
+        plane, wide = np.zeros((20, 20)), np.zeros((20, 21))
+        for wrong, words in [
+            (wide, "truth: expected the size of intensity, 20x20, found 21x20"),
+            (np.zeros(20), r"truth: expected an array \[y, x\], found 1 dimensions"),
+            (np.zeros((20, 20, 3)), r"truth: expected an array \[y, x\], found 3 dimensions"),
+        ]:
+            with self.assertRaisesRegex(eventide.UsageError, words):
                 eventide.evaluate(plane, wrong)
+        with self.assertRaisesRegex(eventide.UsageError, "sigma: expected the size of intensity, 20x20, found 21x20"):
+            eventide.evaluate(plane, plane, wide)
+        for shape, words in (((5, 5), "at least 11x11, found 5x5"), ((0, 5), "expected pixels, found 5x0")):
+            with self.assertRaisesRegex(eventide.UsageError, words):
+                eventide.evaluate(np.zeros(shape), np.zeros(shape))
+
+    def test_numbers_that_are_no_brightness_are_refused(self):
+        plane = np.full((20, 20), 0.5)
+        for kind in (np.uint8, np.int64, complex, object, "U3", "M8[us]", [("grey", "f4")]):
+            other = np.zeros((20, 20), kind)
+            with self.assertRaisesRegex(eventide.UsageError, "intensity: expected floats, 0 black to 1 white, found"):
+                eventide.evaluate(other, plane)
+            with self.assertRaisesRegex(eventide.UsageError, "truth: expected floats, 0 black to 1 white, found"):
+                eventide.evaluate(plane, other)
+        for kind in (bool, np.float16, ">f8", np.longdouble):
+            self.assertEqual(eventide.evaluate(plane.astype(kind), plane.astype(kind))["mse"], 0)
+        for number in (np.nan, np.inf, -np.inf):
+            broken = plane.copy()
+            broken[3, 4] = number
+            for name, planes in (
+                ("intensity", (broken, plane)),
+                ("truth", (plane, broken)),
+                ("sigma", (plane, plane, broken)),
+            ):
+                with self.assertRaisesRegex(eventide.UsageError, f"{name}: expected finite numbers, found -?(nan|inf)"):
+                    eventide.evaluate(*planes)
 
     def test_a_simulation_feeds_a_reconstructor(self):
         reconstructor = eventide.Reconstructor("small", 64, 48)

@@ -3,12 +3,28 @@
 import ast
 import os
 import pathlib
+import struct
 import subprocess
+import threading
 import unittest
+import zlib
 
 import eventide
 import numpy as np
 from recorded import PROGRAM, RecordedTest
+
+
+def write_png(path, pixels):
+    """[y, x, 3] in RGB or [y, x, 4] in RGBA."""
+    height, width, channels = pixels.shape
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
+    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
+    chunks = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunks)
 
 
 class Sources(RecordedTest):
@@ -45,6 +61,28 @@ class Sources(RecordedTest):
         found += [t for t, _ in reader.images]
         self.assertEqual(found, expected)
 
+    def test_images_in_colour_can_be_pushed_as_they_were_read(self):
+        for channels, blue_green_red in ((3, [0, 0, 65535]), (4, [0, 0, 65535, 32896])):
+            folder = self.folder / f"colour{channels}"
+            folder.mkdir()
+            red = np.zeros((48, 64, channels), np.uint8)
+            red[..., 0], red[..., 3:] = 255, 128
+            write_png(folder / "red.png", red)
+            (folder / "images.txt").write_text("0.015 red.png\n")
+            (folder / "events.txt").write_text("0.001 5 5 1\n0.02 5 5 0\n0.06 5 5 1\n")
+            reader, reconstructor = eventide.open(folder, width=64, height=48), self.reconstructor()
+            images = []
+            for events in reader:
+                images += reader.images
+                for t, image in reader.images:
+                    reconstructor.push_image(t, image)
+                reconstructor.push(events)
+            self.assertEqual([(t, image.shape) for t, image in images], [(15_000, (48, 64, channels))])
+            self.assertEqual(images[0][1][47, 63].tolist(), blue_green_red)
+            reconstructor.finish()
+            list(reconstructor.frames())
+            self.assertEqual(reconstructor.counters["used_images"], 1)
+
     def test_a_gap_before_data_without_events_is_one_before_the_next_ones(self):
         camera, send = self.udp_camera()
         reconstructor = self.reconstructor()
@@ -57,8 +95,16 @@ class Sources(RecordedTest):
             camera.read_into(reconstructor)
         self.assertLess(damaged, 400 * 4600)
         send(outside)
-        send([(1000 + i, i, i, 1) for i in range(40)])
+
+        def follow():  # in a read of its own
+            while camera.damaged == damaged:
+                pass
+            send([(1000 + i, i, i, 1) for i in range(40)])
+
+        following = threading.Thread(target=follow)
+        following.start()
         self.assertGreater(len(next(camera)), 0)
+        following.join()
         self.assertTrue(camera.gap_before)
         send([(2000 + i, i, i, 1) for i in range(40)])
         self.assertGreater(len(next(camera)), 0)
@@ -88,8 +134,16 @@ class Sources(RecordedTest):
             with eventide.Writer(str(file), 64, 48) as writer:
                 writer.write(self.events())
                 raise KeyError
-        del writer
-        self.assertFalse(file.exists())
+        self.assertEqual(list(self.folder.glob("half*")), [])
+        for again in (lambda: writer.write(self.events()), writer.finish):
+            with self.assertRaisesRegex(eventide.UsageError, "being written, found one that was given up"):
+                again()
+
+    def test_what_is_written_has_a_name(self):
+        with self.assertRaisesRegex(eventide.UsageError, "expected the name of a file, found none"):
+            eventide.Writer("", 64, 48, "text")
+        with self.assertRaisesRegex(eventide.UsageError, "expected the name of a file, found none"):
+            self.reconstructor().save_state("")
 
     def test_a_camera_gives_events_until_it_is_stopped(self):
         camera = eventide.open_camera("sim:demo?size=64x48&speed=max")
@@ -155,6 +209,8 @@ class Sources(RecordedTest):
         self.assertIn("does not say the sensor's size", logged.output[-1])
         with self.assertRaises(AssertionError), self.assertLogs("eventide"):
             eventide.open(log, width=64, height=48)
+        sized = eventide.Reader(log, "text", 70, 50)
+        self.assertEqual((sized.width, sized.height, sized.format), (70, 50, "text"))
 
     def test_of_several_cameras_the_events_of_the_stream_that_is_wanted_are_read(self):
         whole, chosen = eventide.open(self.recording), eventide.open(self.recording, stream="0")

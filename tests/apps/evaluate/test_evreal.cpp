@@ -58,6 +58,24 @@ TEST(Evreal, SaysWhichSequenceHasNoImageInItsCut) {
     EXPECT_EQ(report.notes[0], "boxes_6dof: none of its 5 images lies in the cut, 5 to 20 s");
 }
 
+/// What is too short for its cut tells it.
+TEST(Evreal, CutsItsSequencesWhereItsTablesDo) {
+    const std::vector<std::pair<std::string, std::string>> cuts{
+        {"boxes_6dof", "5 to 20 s"},        {"calibration", "5 to 20 s"},
+        {"dynamic_6dof", "5 to 20 s"},      {"indoor_flying1", "10 to 70 s"},
+        {"indoor_flying2", "10 to 70 s"},   {"indoor_flying3", "10 to 70 s"},
+        {"indoor_flying4", "10 to 19.8 s"}, {"office_zigzag", "5 to 12 s"},
+        {"poster_6dof", "5 to 20 s"},       {"shapes_6dof", "5 to 20 s"},
+        {"slider_depth", "1 to 2.5 s"}};
+    const fs::path dataset = fresh_folder("ecd_cuts");
+    std::vector<std::string> notes;
+    for (const auto& [name, cut] : cuts) {
+        write_recording(dataset / name, .2, .002, .1);
+        notes.push_back(name + ": none of its 2 images lies in the cut, " + cut);
+    }
+    EXPECT_EQ(evaluate_evreal(dataset, small_model()).notes, notes);
+}
+
 TEST(Evreal, NeverTakesTheLastImageOfAWholeRecording) {
     const fs::path dataset = fresh_folder("ecd_two");
     write_recording(dataset / "two_images", .2, .002, .1);

@@ -1,0 +1,36 @@
+// One call of an object at a time.
+#pragma once
+
+#include <eventide/error.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+namespace eventide::python {
+
+/// A mutex that refuses the thread that holds it, instead of waiting for ever: while the library
+/// waits in a call, the handler of a signal or of a warning may call the same object.
+class CallLock {
+public:
+    /// Throws Error (usage).
+    void lock() {
+        if (is_held_here())
+            throw Error(ErrorKind::usage,
+                        "expected one call at a time, found one within another of the same object, "
+                        "as by the handler of a signal");
+        mutex_.lock();
+        holder_ = std::this_thread::get_id();
+    }
+    void unlock() {
+        holder_ = std::thread::id{};
+        mutex_.unlock();
+    }
+    bool is_held_here() const { return holder_ == std::this_thread::get_id(); }
+
+private:
+    std::mutex mutex_;
+    std::atomic<std::thread::id> holder_{};
+};
+
+}  // namespace eventide::python
