@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/file_identity.h"
+#include "src/io/file_lock.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>
@@ -111,17 +112,28 @@ void OutputFile::open_growing(bool overwrite) {
     seekable_ = true;
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     made_ = file_ >= 0;
-    if (made_) return;
+    if (made_) return take_alone();
     if (errno != EEXIST) fail("created", errno);
     file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     struct stat facts {};
     if (file_ < 0 || ::fstat(file_, &facts) != 0) fail("opened", errno);
+    take_alone();
     // Made by another since refuse_existing() looked.
     if (facts.st_size > 0 && !overwrite) {
         ::close(std::exchange(file_, -1));
         throw existing_file(name_);
     }
     has_other_names_ = facts.st_nlink > 1;
+}
+
+/// The bytes of two who write at once would be mixed.
+void OutputFile::take_alone() {
+    if (lock_file(file_)) return;
+    ::close(std::exchange(file_, -1));
+    throw Error(ErrorKind::usage,
+                name_ +
+                    ": expected a file that nobody else writes, found one that another program "
+                    "writes now");
 }
 
 void OutputFile::open_beside(bool overwrite) {
@@ -150,6 +162,7 @@ void OutputFile::begin() {
         ::close(std::exchange(file_, -1));
         replaces_ = true;
         open_beside(true);
+        take_alone();
         publish();
     } else if (::ftruncate(file_, 0) != 0) {
         fail("emptied", errno);
@@ -220,6 +233,7 @@ std::uint64_t OutputFile::size() const {
 
 std::string OutputFile::path_to_reopen() {
     begin();
+    unlock_file(file_);  // HDF5 takes a lock of its own
     return "/proc/self/fd/" + std::to_string(file_);
 }
 

@@ -185,6 +185,28 @@ TEST(OutputFile, AGrowingFileReplacesWithItsFirstByteOnly) {
     EXPECT_FALSE(fs::exists(temp / "b"));
 }
 
+TEST(OutputFile, AGrowingFileHasOneWriterAtATime) {
+    const TempFolder temp;
+    const std::string taken = "usage: " + temp / "a" +
+                              ": expected a file that nobody else writes, found one that another "
+                              "program writes now";
+    {
+        OutputFile first{temp / "a", kGrow};
+        EXPECT_EQ(refusal(temp / "a", kGrow), taken) << "before its first byte";
+        first.write("first");
+        EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), taken);
+        EXPECT_EQ(read_text(temp / "a"), "first");
+        first.close();
+    }
+    EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), "");
+    EXPECT_EQ(read_text(temp / "a"), "first");
+    fs::create_hard_link(temp / "a", temp / "other name");
+    OutputFile second{temp / "a", kReplaceGrowing};
+    second.write("second");
+    EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), taken);
+    EXPECT_EQ(refusal(temp / "other name", kReplaceGrowing), "") << "what was there before";
+}
+
 TEST(OutputFile, WhatIsPublishedGrowsOn) {
     const TempFolder temp;
     OutputFile file{temp / "a"};
