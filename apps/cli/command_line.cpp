@@ -236,6 +236,27 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
                 "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
 }
 
+/// As which the program and its commands know a word; null: none.
+const CLI::Option* option_named(const std::string& word, const CLI::App& app) {
+    if (!word.starts_with("-") || word.size() < 2) return nullptr;
+    for (const CLI::App* each : app.get_subcommands(nullptr))
+        if (const CLI::Option* found = each->get_option_no_throw(word)) return found;
+    return app.get_option_no_throw(word);
+}
+
+/// CLI11 takes the word behind an option for its value, also where that is the next option: of
+/// `--stats --quiet` it would make a file of that name.
+void refuse_forgotten_values(const std::vector<std::string>& arguments, const CLI::App& app) {
+    for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i + 1] != "--"; ++i) {
+        const CLI::Option* option = option_named(arguments[i], app);
+        const std::string& next = arguments[i + 1];
+        if (option == nullptr || option->get_items_expected_min() == 0) continue;
+        if (next.starts_with("--") && option_named(next, app) != nullptr)
+            throw Error(ErrorKind::usage, arguments[i] + ": expected " + option->get_type_name() +
+                                              ", found the option " + next);
+    }
+}
+
 /// CLI11's "--fps: 1 required RATE missing" in our words; everything else as it is.
 std::string in_our_words(const std::string& text) {
     const std::string_view before = ": 1 required ", after = " missing";
@@ -276,6 +297,7 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     std::vector<Offered> commands;
     for (auto& command : all_commands())
         commands.push_back(offer(app, std::move(command), arguments));
+    refuse_forgotten_values(arguments, app);
     try {
         // CLI11 takes them from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

@@ -29,6 +29,10 @@ TEST_F(WrongUsage, IsRefused) {
                "expected a factor from 0.01x to 64x, or pixels");
     expect(2, {"run", recording(), "--slow", "1e9", "--out", "null"}, "to 100000, found");
     expect(2, {"run", recording(), "--out"}, "--out: expected SINK, found none");
+    expect(2, {"run", recording(), "--fps", "--out", "null"},
+           "--fps: expected RATE, found the option --out");
+    expect(2, {"run", recording(), "--out", "null", "--stats", "--quiet"},
+           "--stats: expected FILE, found the option --quiet");
     expect(2, {"run", recording(), "--out=~/frames/"}, "--out ~/frames/: ");
     expect(2, {"convert", recording(), "~/a.txt"}, "~/a.txt: ");
     expect(2, {"evaluate", recording(), "--figure", "sigma", "--plots", "~/plots"}, "~/plots: ");
