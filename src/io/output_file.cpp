@@ -33,8 +33,9 @@ std::optional<int> descriptor_named(const fs::path& path) {
     if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
     if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return {};
-    const std::string number = path.filename().string();
-    return number_in<int>(number);
+    const std::string name = path.filename().string();
+    const auto number = number_in<int>(name);
+    return number && std::to_string(*number) == name ? number : std::nullopt;  // not "09"
 }
 
 Error existing_file(const std::string& name) {
@@ -272,11 +273,15 @@ void OutputFile::forget_new_file() {
 
 void refuse_existing(const fs::path& path, bool overwrite) {
     std::error_code none;
-    const auto status = fs::status(path, none);
-    if (fs::is_directory(status))
+    if (fs::is_directory(path, none))
         throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
-    if (overwrite || !fs::is_regular_file(status) || descriptor_named(path)) return;
-    if (fs::file_size(path, none) > 0) throw existing_file(path.string());
+    if (!overwrite && would_replace(path)) throw existing_file(path.string());
+}
+
+bool would_replace(const fs::path& path) {
+    std::error_code none;
+    return fs::is_regular_file(path, none) && !names_open_file(path) &&
+           fs::file_size(path, none) > 0;
 }
 
 bool names_open_file(const fs::path& path) {

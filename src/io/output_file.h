@@ -98,6 +98,9 @@ private:
 /// not set: for a word early in long work, since OutputFile asks again.
 void refuse_existing(const std::filesystem::path& path, bool overwrite);
 
+/// Whether there is a file with something in it, which OutputFile would replace.
+bool would_replace(const std::filesystem::path& path);
+
 /// Whether the path stands for a file that is open already: "-", /dev/stdout, /dev/fd/3.
 bool names_open_file(const std::filesystem::path& path);
 

@@ -235,6 +235,11 @@ TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
     EXPECT_THROW(write_file("/dev/full", std::string_view{"x"}, false), Error);
 }
 
+TEST(OutputFile, AnOpenFileIsNamedAsTheSystemNamesIt) {
+    EXPECT_TRUE(names_open_file("/dev/fd/1") && names_open_file("/proc/self/fd/1"));
+    EXPECT_FALSE(names_open_file("/proc/self/fd/01")) << "what is compared with inputs is not it";
+}
+
 TEST(OutputFile, SaysWhyItCannotBeMade) {
     EXPECT_EQ(refusal("/nowhere/a", {}),
               "failed: /nowhere/a: cannot be created: No such file or directory");
