@@ -148,6 +148,25 @@ TEST(OutputFile, AFileThatAnotherMakesMeanwhileStays) {
     EXPECT_EQ(read_text(temp / "a"), "theirs");
 }
 
+TEST(OutputFile, AFileThatAnotherMakesMeanwhileIsReplacedWhereThatIsAskedFor) {
+    const TempFolder temp;
+    OutputFile file{temp / "a", kReplace};
+    file.write("ours");
+    write_text(temp / "a", "theirs");
+    file.close();
+    EXPECT_EQ(read_text(temp / "a"), "ours");
+}
+
+TEST(OutputFile, WhatIsOpenForAppendingCannotBeMended) {
+    const TempFolder temp;
+    for (const int flags : {0, O_APPEND}) {
+        const int open = ::open((temp / "log").c_str(), O_WRONLY | O_CREAT | flags, 0600);
+        const OutputFile file{"/dev/fd/" + std::to_string(open)};
+        EXPECT_EQ(file.is_seekable(), flags == 0);
+        ::close(open);
+    }
+}
+
 TEST(OutputFile, ReplacingKeepsLinksAndPermissions) {
     const TempFolder temp;
     write_text(temp / "target", "old");
@@ -237,6 +256,7 @@ TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
 
 TEST(OutputFile, AnOpenFileIsNamedAsTheSystemNamesIt) {
     EXPECT_TRUE(names_open_file("/dev/fd/1") && names_open_file("/proc/self/fd/1"));
+    EXPECT_TRUE(names_open_file("/dev/stdout") && names_open_file("/dev/stderr"));
     EXPECT_FALSE(names_open_file("/proc/self/fd/01")) << "what is compared with inputs is not it";
 }
 

@@ -74,22 +74,29 @@ TEST(Hdf5Damage, DataOfOtherFilesAreRefused) {
                 AllOf(HasSubstr("expected data in the file itself, found a link to "),
                       HasSubstr("other.h5")));
     const std::string raw = folder.write("raw", std::string(200, 'x'));
-    {
-        const Hdf5Made file(folder.path("raw.h5"));
-        file.column("y", columns.y, H5T_STD_U16LE);
-        file.column("t", columns.t, H5T_STD_I64LE);
-        file.column("p", columns.p, H5T_STD_U8LE);
-        const hsize_t rows = columns.x.size();
-        const hid_t space = H5Screate_simple(1, &rows, nullptr),
-                    plan = H5Pcreate(H5P_DATASET_CREATE);
-        H5Pset_external(plan, raw.c_str(), 0, 2 * rows);
-        H5Dclose(H5Dcreate2(file.id(), "x", H5T_STD_U16LE, space, H5P_DEFAULT, plan, H5P_DEFAULT));
-        H5Pclose(plan);
-        H5Sclose(space);
+    for (const bool is_virtual : {true, false}) {
+        {
+            const Hdf5Made file(folder.path("a.h5"));
+            file.column("y", columns.y, H5T_STD_U16LE);
+            file.column("t", columns.t, H5T_STD_I64LE);
+            file.column("p", columns.p, H5T_STD_U8LE);
+            const hsize_t rows = columns.x.size();
+            const hid_t space = H5Screate_simple(1, &rows, nullptr),
+                        plan = H5Pcreate(H5P_DATASET_CREATE);
+            if (is_virtual)
+                H5Pset_virtual(plan, space, "other.h5", "/events/x", space);
+            else
+                H5Pset_external(plan, raw.c_str(), 0, 2 * rows);
+            H5Dclose(
+                H5Dcreate2(file.id(), "x", H5T_STD_U16LE, space, H5P_DEFAULT, plan, H5P_DEFAULT));
+            H5Pclose(plan);
+            H5Sclose(space);
+        }
+        EXPECT_THAT(refusal(folder.path("a.h5")),
+                    HasSubstr("x: expected data in the file itself, found a data set whose "
+                              "numbers lie in other files"))
+            << is_virtual;
     }
-    EXPECT_THAT(
-        refusal(folder.path("raw.h5")),
-        HasSubstr("x: expected data in the file itself, found a data set whose numbers lie in"));
 }
 
 TEST(Hdf5Damage, RowsThatTheFileDoesNotHoldAreRefused) {

@@ -118,9 +118,11 @@ TEST(FolderSink, AFrameBeyondThoseOfTheEarlierRunIsNotItsAndStays) {
             for (int n = 0; n < 3; ++n) sink.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
             if (!killed) sink.close();
         }
-        const std::string mine = temp / "out/frames/frame_0000000009.png";
+        // A killed run may have been about to write one more than it lists.
+        const std::string name = killed ? "frame_0000000004.png" : "frame_0000000003.png";
+        const std::string mine = temp / ("out/frames/" + name);
         test::write_text(mine, "mine");
-        EXPECT_NE(refusal(settings).find("frame_0000000009.png"), std::string::npos) << killed;
+        EXPECT_NE(refusal(settings).find(name), std::string::npos) << killed;
         EXPECT_EQ(test::read_text(mine), "mine");
         std::filesystem::remove(mine);
     }
