@@ -195,6 +195,13 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
     return "; did you mean eventide run " + word + " --out video.mp4?";
 }
 
+/// Of what was taken for an option.
+std::string file_suggestion(const std::string& word) {
+    std::error_code ignored;
+    if (!word.starts_with("-") || !std::filesystem::exists(word, ignored)) return {};
+    return "; did you mean the file ./" + word + "?";
+}
+
 /// Of all arguments that were not expected, the first says most.
 [[noreturn]] void refuse_extras(const std::vector<std::string>& arguments, const CLI::App& app,
                                 const std::string& command) {
@@ -217,12 +224,12 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
         if (argument == "--") break;  // behind it nothing is an option
         const std::string flag = argument.substr(0, argument.find('='));
         if (flag.starts_with("--") && std::find(flags.begin(), flags.end(), flag) == flags.end())
-            throw Error(ErrorKind::usage,
-                        "there is no option " + flag + suggestion(flag, flags) + help);
+            throw Error(ErrorKind::usage, "there is no option " + flag + file_suggestion(argument) +
+                                              suggestion(flag, flags) + help);
     }
     // CLI11 has them in an order of its own.
     std::vector<std::string> remaining = app.remaining(true);
-    std::string left;
+    std::string left, files;
     bool output = command == "run";
     for (const std::string& argument : arguments) {
         const auto found = std::ranges::find(remaining, argument);
@@ -230,10 +237,11 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
         remaining.erase(found);
         if (argument == "--") continue;
         left += (left.empty() ? "'" : " '") + argument + "'";
+        files += file_suggestion(argument);
         output = output && !argument.starts_with("-");
     }
     throw Error(ErrorKind::usage,
-                "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
+                "unexpected argument " + left + (output ? "; did you mean --out?" : files) + help);
 }
 
 /// As which the program and its commands know a word; null: none.

@@ -17,6 +17,8 @@ TEST_F(WrongUsage, IsRefused) {
            "did you mean --from?; see eventide run --help");
     expect(2, {"run", recording(), "--strict", "--no-strict", "--out", "null"}, "--no-strict");
     expect(2, {"info", recording(), "another"}, "another");
+    write_text(temp_ / "-x.txt", "64 48\n");
+    expect(2, {"info", "-x.txt"}, "'-x.txt'; did you mean the file ./-x.txt?");
     expect(2, {"run"}, "SOURCE");
     expect(2, {"run", recording()}, "--out");
     expect(2, {"run", recording(), "--fsp", "3", "--out", "null"}, "--fsp");
