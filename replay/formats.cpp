@@ -18,6 +18,7 @@
 #include "src/codec/text/text.h"
 #include "src/core/error.h"
 #include "src/core/list_text.h"
+#include "src/core/lower_case.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -199,8 +200,9 @@ const Format* detect_format(Bytes first_bytes) {
 }
 
 const Format* format_for_writing(const std::string& path) {
+    const std::string name = lower_case(path);
     const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& format) {
-        return format.is_written() && path.ends_with(format.extension);
+        return format.is_written() && name.ends_with(format.extension);
     });
     return found == kFormats.end() ? nullptr : &*found;
 }

@@ -195,6 +195,13 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
     return "; did you mean eventide run " + word + " --out video.mp4?";
 }
 
+/// Of what was taken for an option.
+std::string file_suggestion(const std::string& word) {
+    std::error_code ignored;
+    if (!word.starts_with("-") || !std::filesystem::exists(word, ignored)) return {};
+    return "; did you mean the file ./" + word + "?";
+}
+
 /// Of all arguments that were not expected, the first says most.
 [[noreturn]] void refuse_extras(const std::vector<std::string>& arguments, const CLI::App& app,
                                 const std::string& command) {
@@ -217,12 +224,12 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
         if (argument == "--") break;  // behind it nothing is an option
         const std::string flag = argument.substr(0, argument.find('='));
         if (flag.starts_with("--") && std::find(flags.begin(), flags.end(), flag) == flags.end())
-            throw Error(ErrorKind::usage,
-                        "there is no option " + flag + suggestion(flag, flags) + help);
+            throw Error(ErrorKind::usage, "there is no option " + flag + file_suggestion(argument) +
+                                              suggestion(flag, flags) + help);
     }
     // CLI11 has them in an order of its own.
     std::vector<std::string> remaining = app.remaining(true);
-    std::string left;
+    std::string left, files;
     bool output = command == "run";
     for (const std::string& argument : arguments) {
         const auto found = std::ranges::find(remaining, argument);
@@ -230,10 +237,32 @@ std::string command_suggestion(const std::string& word, const std::vector<std::s
         remaining.erase(found);
         if (argument == "--") continue;
         left += (left.empty() ? "'" : " '") + argument + "'";
+        files += file_suggestion(argument);
         output = output && !argument.starts_with("-");
     }
     throw Error(ErrorKind::usage,
-                "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
+                "unexpected argument " + left + (output ? "; did you mean --out?" : files) + help);
+}
+
+/// As which the program and its commands know a word; null: none.
+const CLI::Option* option_named(const std::string& word, const CLI::App& app) {
+    if (!word.starts_with("-") || word.size() < 2) return nullptr;
+    for (const CLI::App* each : app.get_subcommands(nullptr))
+        if (const CLI::Option* found = each->get_option_no_throw(word)) return found;
+    return app.get_option_no_throw(word);
+}
+
+/// CLI11 takes the word behind an option for its value, also where that is the next option: of
+/// `--stats --quiet` it would make a file of that name.
+void refuse_forgotten_values(const std::vector<std::string>& arguments, const CLI::App& app) {
+    for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i + 1] != "--"; ++i) {
+        const CLI::Option* option = option_named(arguments[i], app);
+        const std::string& next = arguments[i + 1];
+        if (option == nullptr || option->get_items_expected_min() == 0) continue;
+        if (next.starts_with("--") && option_named(next, app) != nullptr)
+            throw Error(ErrorKind::usage, arguments[i] + ": expected " + option->get_type_name() +
+                                              ", found the option " + next);
+    }
 }
 
 /// CLI11's "--fps: 1 required RATE missing" in our words; everything else as it is.
@@ -276,6 +305,7 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     std::vector<Offered> commands;
     for (auto& command : all_commands())
         commands.push_back(offer(app, std::move(command), arguments));
+    refuse_forgotten_values(arguments, app);
     try {
         // CLI11 takes them from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

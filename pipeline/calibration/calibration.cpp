@@ -4,6 +4,7 @@
 #include "pipeline/calibration/yaml_file.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/text_piece.h"
 
 #include <cmath>
 #include <cstdio>
@@ -40,7 +41,7 @@ public:
 
     double number() const {
         const auto value = number_in<double>(text());
-        if (!value) refuse("a number", "'" + text() + "'");
+        if (!value) refuse("a number", "'" + piece_of(text()) + "'");
         return *value;
     }
 
@@ -93,7 +94,7 @@ void check_distortion(const Reader& reader, const Calibration& calibration) {
     if (calibration.distortion_model == "equidistant") return need(4);
     if (calibration.distortion_model == "rational_polynomial") return need(8);
     reader.refuse("plumb_bob, equidistant or rational_polynomial",
-                  "'" + calibration.distortion_model + "'");
+                  "'" + piece_of(calibration.distortion_model) + "'");
 }
 
 /// ROS writes zeros for a camera that is not calibrated: frames would be black.

@@ -173,7 +173,9 @@ void RunFolder::prepare(bool overwrite) {
     const fs::path itself = folder_.has_filename() ? folder_ : folder_.parent_path();
     if (fs::exists(itself) && !fs::is_directory(itself))
         throw Error(ErrorKind::usage, folder_.string() + ": expected a folder, found a file");
-    if (fs::exists(folder_) && !fs::is_empty(folder_)) {
+    made_ = create_folder(folder_);
+    lock_.take(folder_);
+    if (!fs::is_empty(folder_)) {
         if (!overwrite)
             throw Error(ErrorKind::usage,
                         folder_.string() +
@@ -181,7 +183,6 @@ void RunFolder::prepare(bool overwrite) {
                             "--overwrite replaces an earlier run");
         earlier_ = earlier_files(folder_, files_);
     }
-    made_ = create_folder(folder_);
 }
 
 fs::path RunFolder::next(std::size_t kind) {

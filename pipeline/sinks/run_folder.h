@@ -2,6 +2,8 @@
 // and nothing else.
 #pragma once
 
+#include "src/io/file_lock.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -39,9 +41,9 @@ struct RunFolderFiles {
 class RunFolder {
 public:
     /// Makes the folder. With `overwrite` it may hold an earlier run's files, which stay until
-    /// begin(). Throws Error: usage for a folder that holds something, without `overwrite`, or
-    /// holds a file that would be replaced and is not an earlier run's by its record; failed when
-    /// it cannot be made or written to.
+    /// begin(). Throws Error: usage for a folder that another run writes to, that holds something,
+    /// without `overwrite`, or holds a file that would be replaced and is not an earlier run's by
+    /// its record; failed when it cannot be made or written to.
     RunFolder(std::filesystem::path folder, bool overwrite, RunFolderFiles files);
     /// A folder that was made here and holds nothing is removed.
     ~RunFolder();
@@ -69,6 +71,7 @@ private:
 
     std::filesystem::path folder_;
     RunFolderFiles files_;
+    FolderLock lock_;
     std::vector<std::filesystem::path> earlier_;  // an earlier run's
     bool made_ = false, begun_ = false;
     std::vector<std::uint64_t> written_;  // of each kind

@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/file_identity.h"
+#include "src/io/file_lock.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>
@@ -32,8 +33,9 @@ std::optional<int> descriptor_named(const fs::path& path) {
     if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
     if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return {};
-    const std::string number = path.filename().string();
-    return number_in<int>(number);
+    const std::string name = path.filename().string();
+    const auto number = number_in<int>(name);
+    return number && std::to_string(*number) == name ? number : std::nullopt;  // not "09"
 }
 
 Error existing_file(const std::string& name) {
@@ -111,17 +113,28 @@ void OutputFile::open_growing(bool overwrite) {
     seekable_ = true;
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     made_ = file_ >= 0;
-    if (made_) return;
+    if (made_) return take_alone();
     if (errno != EEXIST) fail("created", errno);
     file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     struct stat facts {};
     if (file_ < 0 || ::fstat(file_, &facts) != 0) fail("opened", errno);
+    take_alone();
     // Made by another since refuse_existing() looked.
     if (facts.st_size > 0 && !overwrite) {
         ::close(std::exchange(file_, -1));
         throw existing_file(name_);
     }
     has_other_names_ = facts.st_nlink > 1;
+}
+
+/// The bytes of two who write at once would be mixed.
+void OutputFile::take_alone() {
+    if (lock_file(file_)) return;
+    ::close(std::exchange(file_, -1));
+    throw Error(ErrorKind::usage,
+                name_ +
+                    ": expected a file that nobody else writes, found one that another program "
+                    "writes now");
 }
 
 void OutputFile::open_beside(bool overwrite) {
@@ -150,6 +163,7 @@ void OutputFile::begin() {
         ::close(std::exchange(file_, -1));
         replaces_ = true;
         open_beside(true);
+        take_alone();
         publish();
     } else if (::ftruncate(file_, 0) != 0) {
         fail("emptied", errno);
@@ -220,6 +234,7 @@ std::uint64_t OutputFile::size() const {
 
 std::string OutputFile::path_to_reopen() {
     begin();
+    unlock_file(file_);  // HDF5 takes a lock of its own
     return "/proc/self/fd/" + std::to_string(file_);
 }
 
@@ -260,11 +275,15 @@ void refuse_existing(const fs::path& path, bool overwrite) {
     if (path.empty())
         throw Error(ErrorKind::usage, "output: expected the name of a file, found none");
     std::error_code none;
-    const auto status = fs::status(path, none);
-    if (fs::is_directory(status))
+    if (fs::is_directory(path, none))
         throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
-    if (overwrite || !fs::is_regular_file(status) || descriptor_named(path)) return;
-    if (fs::file_size(path, none) > 0) throw existing_file(path.string());
+    if (!overwrite && would_replace(path)) throw existing_file(path.string());
+}
+
+bool would_replace(const fs::path& path) {
+    std::error_code none;
+    return fs::is_regular_file(path, none) && !names_open_file(path) &&
+           fs::file_size(path, none) > 0;
 }
 
 bool names_open_file(const fs::path& path) {

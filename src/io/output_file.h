@@ -32,8 +32,8 @@ struct OutputOptions {
 class OutputFile {
 public:
     /// "-" is standard output. Pipes and devices are written to, not replaced. Throws Error: usage
-    /// for a folder, and for a file with something in it without `overwrite`; failed when it cannot
-    /// be made.
+    /// for a folder, for a file with something in it without `overwrite`, and for a growing one
+    /// that another writes; failed when it cannot be made.
     explicit OutputFile(const std::filesystem::path& path, const OutputOptions& options = {});
     /// Without publish() or close() what was written beside is removed.
     ~OutputFile();
@@ -74,6 +74,7 @@ private:
     void open_again();
     bool wait_for_room(int& asked);
     void open_growing(bool overwrite);
+    void take_alone();
     void open_beside(bool overwrite);
     void begin();
     void rename_part();
@@ -96,6 +97,9 @@ private:
 /// Throws Error (usage) when `path` is empty, a folder, or a file with something in it and
 /// `overwrite` is not set: for a word early in long work, since OutputFile asks again.
 void refuse_existing(const std::filesystem::path& path, bool overwrite);
+
+/// Whether there is a file with something in it, which OutputFile would replace.
+bool would_replace(const std::filesystem::path& path);
 
 /// Whether the path stands for a file that is open already: "-", /dev/stdout, /dev/fd/3.
 bool names_open_file(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/text_piece.h"
 
 #include <limits>
 
@@ -12,7 +13,8 @@ namespace {
 
 /// As it stands in the file; of a command line in quotes.
 std::string shown(const SettingValue& value) {
-    if (value.place.empty() || value.kind == ValueKind::text) return "'" + value.text + "'";
+    if (value.place.empty() || value.kind == ValueKind::text)
+        return "'" + piece_of(value.text) + "'";
     if (value.kind == ValueKind::list) return "a list of " + std::to_string(value.items.size());
     return value.text.empty() ? name_of(value.kind) : value.text;
 }

@@ -4,6 +4,7 @@
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/text_piece.h"
 #include "src/settings/setting_value.h"
 
 #include <eventide/frame.h>
@@ -18,7 +19,7 @@
 namespace eventide {
 
 void throw_usage(const std::string& expected, const std::string& found) {
-    throw Error(ErrorKind::usage, "expected " + expected + ", found '" + found + "'");
+    throw Error(ErrorKind::usage, "expected " + expected + ", found '" + piece_of(found) + "'");
 }
 
 int parse_whole(const std::string& text, int least, int most) {

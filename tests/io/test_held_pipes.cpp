@@ -69,6 +69,20 @@ TEST_F(HeldPipesTest, WhatCannotBeOpenedIsNotWaitedFor) {
     held.wait({});
 }
 
+TEST_F(HeldPipesTest, OnceLetGoLeaveWhatHasTheirNumbersNow) {
+    const std::string path = pipe("pipe");
+    const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+    int somebody_elses = -1;
+    {
+        HeldPipes held{{path}};
+        held.look();
+        held.let_go();
+        somebody_elses = ::dup(reader);  // the lowest number that is free
+    }
+    EXPECT_EQ(::close(somebody_elses), 0);
+    ::close(reader);
+}
+
 TEST_F(HeldPipesTest, AreLookedForWhileSomethingElseIsWaitedFor) {
     const std::string early = pipe("early"), late = pipe("late");
     HeldPipes held{{early, late}};

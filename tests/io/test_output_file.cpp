@@ -148,6 +148,25 @@ TEST(OutputFile, AFileThatAnotherMakesMeanwhileStays) {
     EXPECT_EQ(read_text(temp / "a"), "theirs");
 }
 
+TEST(OutputFile, AFileThatAnotherMakesMeanwhileIsReplacedWhereThatIsAskedFor) {
+    const TempFolder temp;
+    OutputFile file{temp / "a", kReplace};
+    file.write("ours");
+    write_text(temp / "a", "theirs");
+    file.close();
+    EXPECT_EQ(read_text(temp / "a"), "ours");
+}
+
+TEST(OutputFile, WhatIsOpenForAppendingCannotBeMended) {
+    const TempFolder temp;
+    for (const int flags : {0, O_APPEND}) {
+        const int open = ::open((temp / "log").c_str(), O_WRONLY | O_CREAT | flags, 0600);
+        const OutputFile file{"/dev/fd/" + std::to_string(open)};
+        EXPECT_EQ(file.is_seekable(), flags == 0);
+        ::close(open);
+    }
+}
+
 TEST(OutputFile, ReplacingKeepsLinksAndPermissions) {
     const TempFolder temp;
     write_text(temp / "target", "old");
@@ -185,6 +204,28 @@ TEST(OutputFile, AGrowingFileReplacesWithItsFirstByteOnly) {
     EXPECT_FALSE(fs::exists(temp / "b"));
 }
 
+TEST(OutputFile, AGrowingFileHasOneWriterAtATime) {
+    const TempFolder temp;
+    const std::string taken = "usage: " + temp / "a" +
+                              ": expected a file that nobody else writes, found one that another "
+                              "program writes now";
+    {
+        OutputFile first{temp / "a", kGrow};
+        EXPECT_EQ(refusal(temp / "a", kGrow), taken) << "before its first byte";
+        first.write("first");
+        EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), taken);
+        EXPECT_EQ(read_text(temp / "a"), "first");
+        first.close();
+    }
+    EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), "");
+    EXPECT_EQ(read_text(temp / "a"), "first");
+    fs::create_hard_link(temp / "a", temp / "other name");
+    OutputFile second{temp / "a", kReplaceGrowing};
+    second.write("second");
+    EXPECT_EQ(refusal(temp / "a", kReplaceGrowing), taken);
+    EXPECT_EQ(refusal(temp / "other name", kReplaceGrowing), "") << "what was there before";
+}
+
 TEST(OutputFile, WhatIsPublishedGrowsOn) {
     const TempFolder temp;
     OutputFile file{temp / "a"};
@@ -211,6 +252,12 @@ TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
     write_file("/dev/null", std::string_view{"x"}, false);
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
     EXPECT_THROW(write_file("/dev/full", std::string_view{"x"}, false), Error);
+}
+
+TEST(OutputFile, AnOpenFileIsNamedAsTheSystemNamesIt) {
+    EXPECT_TRUE(names_open_file("/dev/fd/1") && names_open_file("/proc/self/fd/1"));
+    EXPECT_TRUE(names_open_file("/dev/stdout") && names_open_file("/dev/stderr"));
+    EXPECT_FALSE(names_open_file("/proc/self/fd/01")) << "what is compared with inputs is not it";
 }
 
 TEST(OutputFile, SaysWhyItCannotBeMade) {

@@ -61,6 +61,44 @@ TEST(Hdf5Damage, OfColumnsIsRefusedByName) {
     EXPECT_THAT(refusal(folder.path("b.h5")), HasSubstr("as many rows as t, 100, found 99"));
 }
 
+/// Of files that no command line names, one may be its output.
+TEST(Hdf5Damage, DataOfOtherFilesAreRefused) {
+    const TestFolder folder;
+    const Columns columns(some_events(100));
+    test::write_dsec(folder.path("other.h5"), some_events(5'000, test::kDsecOffset));
+    {
+        const Hdf5Made file(folder.path("linked.h5"));
+        H5Lcreate_external("other.h5", "/events", file.id(), "events", H5P_DEFAULT, H5P_DEFAULT);
+    }
+    EXPECT_THAT(refusal(folder.path("linked.h5")),
+                AllOf(HasSubstr("expected data in the file itself, found a link to "),
+                      HasSubstr("other.h5")));
+    const std::string raw = folder.write("raw", std::string(200, 'x'));
+    for (const bool is_virtual : {true, false}) {
+        {
+            const Hdf5Made file(folder.path("a.h5"));
+            file.column("y", columns.y, H5T_STD_U16LE);
+            file.column("t", columns.t, H5T_STD_I64LE);
+            file.column("p", columns.p, H5T_STD_U8LE);
+            const hsize_t rows = columns.x.size();
+            const hid_t space = H5Screate_simple(1, &rows, nullptr),
+                        plan = H5Pcreate(H5P_DATASET_CREATE);
+            if (is_virtual)
+                H5Pset_virtual(plan, space, "other.h5", "/events/x", space);
+            else
+                H5Pset_external(plan, raw.c_str(), 0, 2 * rows);
+            H5Dclose(
+                H5Dcreate2(file.id(), "x", H5T_STD_U16LE, space, H5P_DEFAULT, plan, H5P_DEFAULT));
+            H5Pclose(plan);
+            H5Sclose(space);
+        }
+        EXPECT_THAT(refusal(folder.path("a.h5")),
+                    HasSubstr("x: expected data in the file itself, found a data set whose "
+                              "numbers lie in other files"))
+            << is_virtual;
+    }
+}
+
 TEST(Hdf5Damage, RowsThatTheFileDoesNotHoldAreRefused) {
     const TestFolder folder;
     {

@@ -2,11 +2,16 @@
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
+#include "src/io/file_lock.h"
 #include "tests/replay/hdf5_files.h"
 #include "tests/replay/hdf5_layouts.h"
 #include "tests/replay/recording_files.h"
+#include "tests/support/error_of.h"
 
 #include <gmock/gmock.h>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace eventide {
 namespace {
@@ -98,6 +103,18 @@ TEST(Hdf5Writing, GrowsUnderItsNameWhereThatIsAskedFor) {
     file.write(batch);
     file.finish();
     EXPECT_TRUE(read_everything(*open_recording(folder.path("a.h5"))).events == events);
+}
+
+TEST(Hdf5Writing, OneThatAnotherProgramWritesIsNotSaidToBeDamaged) {
+    const TestFolder folder;
+    const std::string file = folder.path("a.h5");
+    test::write_hdf5(file, some_events(10));
+    const int writer = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_TRUE(lock_file(writer));  // as HDF5 itself does
+    EXPECT_THAT(test::error_of([&] { open_recording(file); }, ErrorKind::input),
+                testing::HasSubstr("found one that another program has locked"));
+    ::close(writer);
+    EXPECT_NO_THROW(open_recording(file));
 }
 
 TEST(Hdf5Writing, WhatAKilledRunHasWrittenCanBeReadButForTheLastSecond) {

@@ -234,6 +234,7 @@ TEST(OpenRecording, FormatsAreKnownByNameAndWritersByExtension) {
     for (const Format& format : all_formats()) EXPECT_EQ(find_format(format.name), &format);
     EXPECT_EQ(find_format("nonsense"), nullptr);
     EXPECT_EQ(format_for_writing("a/b.txt")->name, "text");
+    EXPECT_EQ(format_for_writing("B.H5")->name, "hdf5");
     EXPECT_EQ(format_for_writing("b.aedat")->name, "aedat3");
     EXPECT_EQ(format_for_writing("b.xyz"), nullptr);
     EXPECT_THROW(open_writer("aedat2"), Error);

@@ -64,6 +64,10 @@ TEST_F(Settings, OfAFileAreRefusedWithLineNameAndWhatStandsThere) {
     EXPECT_EQ((std::pair{whole_, colour_}), (std::pair{1, Colour::red})) << "nothing was taken";
 }
 
+TEST_F(Settings, OfAnEndlessValueOnlyTheBeginningIsShown) {
+    EXPECT_LT(refusal(colour_setting_, "n = '" + std::string(1 << 20, 'x') + "'").size(), 300U);
+}
+
 TEST_F(Settings, ItemsOfListsAndTablesHaveLinesOfTheirOwn) {
     const Setting each = file_setting("n", [](const SettingValue& value) {
         for (const SettingValue& item : value.items) whole_of(item, 0, 9);

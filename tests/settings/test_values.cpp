@@ -67,6 +67,8 @@ TEST(Values, SayWhatWasExpectedAndFound) {
     for (const char* wrong : {"", "3.5", "4", "-1", "1a", "99999999999"})
         EXPECT_EQ(message([&] { parse_whole(wrong, 0, 3); }),
                   std::string{"expected a whole number from 0 to 3, found '"} + wrong + "'");
+    EXPECT_LT(message([&] { parse_duration(std::string(1 << 20, 'x')); }).size(), 300U)
+        << "a file may have a value without an end";
     EXPECT_EQ(message([&] {
                   parse_choice("c", {"a", "b", "d"});
               }),

@@ -108,9 +108,9 @@ TEST_F(Quality, WhatWasGivenStays) {
 }
 
 TEST_F(Quality, EventWindowsAreOnlyChosenWhereNoneWereAskedFor) {
-    for (const std::vector<std::string> given : {std::vector<std::string>{"--window", "model"},
-                                                 {"--window", "20ms"},
-                                                 {"--fps", "frame"}}) {
+    for (const std::vector<std::string>& given : {std::vector<std::string>{"--window", "model"},
+                                                  {"--window", "20ms"},
+                                                  {"--fps", "frame"}}) {
         std::vector<std::string> run{"run",   kCamera, "--model",    model(),
                                      "--out", "a/",    "--overwrite"};
         run.insert(run.end(), given.begin(), given.end());

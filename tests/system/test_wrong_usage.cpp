@@ -17,6 +17,8 @@ TEST_F(WrongUsage, IsRefused) {
            "did you mean --from?; see eventide run --help");
     expect(2, {"run", recording(), "--strict", "--no-strict", "--out", "null"}, "--no-strict");
     expect(2, {"info", recording(), "another"}, "another");
+    write_text(temp_ / "-x.txt", "64 48\n");
+    expect(2, {"info", "-x.txt"}, "'-x.txt'; did you mean the file ./-x.txt?");
     expect(2, {"run"}, "SOURCE");
     expect(2, {"run", recording()}, "--out");
     expect(2, {"run", recording(), "--fsp", "3", "--out", "null"}, "--fsp");
@@ -29,6 +31,10 @@ TEST_F(WrongUsage, IsRefused) {
                "expected a factor from 0.01x to 64x, or pixels");
     expect(2, {"run", recording(), "--slow", "1e9", "--out", "null"}, "to 100000, found");
     expect(2, {"run", recording(), "--out"}, "--out: expected SINK, found none");
+    expect(2, {"run", recording(), "--fps", "--out", "null"},
+           "--fps: expected RATE, found the option --out");
+    expect(2, {"run", recording(), "--out", "null", "--stats", "--quiet"},
+           "--stats: expected FILE, found the option --quiet");
     expect(2, {"run", recording(), "--out=~/frames/"}, "--out ~/frames/: ");
     expect(2, {"convert", recording(), "~/a.txt"}, "~/a.txt: ");
     expect(2, {"evaluate", recording(), "--figure", "sigma", "--plots", "~/plots"}, "~/plots: ");

@@ -16,6 +16,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/held_pipes.h"
+#include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
 
@@ -154,6 +155,8 @@ int ConvertCommand::run(Program& program) {
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
     const OutputOptions output{.overwrite = overwrite_,
                                .give_up = [&program] { return program.signals.stopping(); }};
+    // A camera behind a pipe goes on until it is stopped; of a file, a part is not what was wanted.
+    const bool keeps_earlier = !is_read_once(from_file_) && would_replace(to_file_);
     std::unique_ptr<ConvertTarget> target;
     if (to_udp)
         target = open_event_target(to_file_, output, header);
@@ -164,6 +167,7 @@ int ConvertCommand::run(Program& program) {
     const ConvertReport report = convert(*recording, *target, how, [&] {
         if (recording->size_bytes() > 0)
             progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
+        if (keeps_earlier && program.signals.stopping()) throw kept_earlier_file(to_file_);
         return !program.signals.stopping();
     });
     progress.clear();

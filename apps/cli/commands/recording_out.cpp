@@ -11,6 +11,10 @@ bool names_folder(const std::string& path) {
     return path.ends_with('/') || std::filesystem::is_directory(path, none);
 }
 
+Error kept_earlier_file(const std::string& path) {
+    return {ErrorKind::failed, path + ": stopped before the end; the file from before stays"};
+}
+
 RecordingOut::RecordingOut(const std::string& path, const OutputOptions& options,
                            const Format* format, StreamHeader header)
     : format_{format} {

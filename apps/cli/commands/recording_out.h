@@ -5,6 +5,7 @@
 #include "replay/convert.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
+#include "src/core/error.h"
 
 #include <memory>
 #include <string>
@@ -13,6 +14,9 @@ namespace eventide::app {
 
 /// "folder/", or what is a folder already.
 bool names_folder(const std::string& path);
+
+/// For a recording that was stopped before its end and would take the place of a whole one.
+Error kept_earlier_file(const std::string& path);
 
 class RecordingOut final : public ConvertTarget {
 public:

@@ -229,6 +229,7 @@ int SimulateCommand::run(Program& program) {
     header.colour_filter = bayer_;
     const OutputOptions output{.overwrite = overwrite_,
                                .give_up = [&program] { return program.signals.stopping(); }};
+    const bool keeps_earlier = would_replace(out_);
     RecordingOut out{out_, output, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
@@ -251,6 +252,7 @@ int SimulateCommand::run(Program& program) {
         }
         if (!batch.events.empty())
             progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
+        if (keeps_earlier && program.signals.stopping()) throw kept_earlier_file(out_);
         return !program.signals.stopping();
     });
     progress.clear();

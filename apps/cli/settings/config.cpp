@@ -5,6 +5,7 @@
 #include "src/core/environment.h"
 #include "src/core/error.h"
 #include "src/core/list_text.h"
+#include "src/core/text_piece.h"
 #include "src/settings/suggestion.h"
 
 #include <algorithm>
@@ -111,7 +112,7 @@ void refuse_unknown_keys(const ConfigFile& file, const std::vector<const Setting
         for (const Setting& setting : table->settings) known.push_back(path_of(*table, setting));
     for (const auto& [path, value] : file)
         if (std::ranges::find(known, path) == known.end())
-            throw Error(ErrorKind::usage, value.place + ": unknown key '" + path + "'" +
+            throw Error(ErrorKind::usage, value.place + ": unknown key '" + piece_of(path) + "'" +
                                               suggestion(path, known) +
                                               "; `eventide --default-config` shows all keys");
 }

@@ -9,6 +9,7 @@
 #include "pipeline/sinks/video/video.h"
 #include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -113,7 +114,7 @@ SinkName parse_sink(const std::string& sink) {
         return *name;
     }
     if (names_video(sink)) return {SinkKind::video, sink};
-    if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
+    if (lower_case(sink).ends_with(".y4m")) return {SinkKind::stream, sink};
     std::error_code none;  // a name that no file can have is none of these
     if (sink.ends_with('/') || std::filesystem::is_directory(sink, none))
         return {SinkKind::folder, sink};

@@ -6,6 +6,7 @@
 #include "src/io/hdf5/hdf5_filters.h"
 #include "src/io/hdf5/hdf5_library.h"
 
+#include <limits.h>
 #include <algorithm>
 #include <functional>
 #include <mutex>
@@ -61,6 +62,12 @@ hid_t native_kind() {
     return -1;
 }
 
+std::string file_of(hid_t object) {
+    std::string name(PATH_MAX, '\0');
+    hdf5().H5Fget_name(object, name.data(), name.size());
+    return name.substr(0, name.find('\0'));
+}
+
 }  // namespace
 
 void Hdf5Data::open(std::int64_t file, const std::string& path) {
@@ -75,6 +82,7 @@ void Hdf5Data::open(std::int64_t file, const std::string& path) {
     kind_ = kind_of(type_.id());
     shape_.resize(std::size_t(std::max(0, h5.H5Sget_simple_extent_ndims(space_.id()))));
     h5.H5Sget_simple_extent_dims(space_.id(), reinterpret_cast<hsize_t*>(shape_.data()), nullptr);
+    check_place(file);
     check_filters(name_, plan_.id());
     check_blocks();
     if (!shape_.empty()) check_stored();
@@ -123,6 +131,16 @@ std::uint64_t Hdf5Data::block_bytes() const {
 void Hdf5Data::check_blocks() const {
     if (const std::uint64_t bytes = block_bytes(); bytes > kLargestBlock)
         refuse("blocks of at most 256 MiB", "blocks of " + std::to_string(bytes) + " bytes");
+}
+
+/// In the file itself: what lies in others, which nobody named, might be an output.
+void Hdf5Data::check_place(std::int64_t file) const {
+    const Hdf5Library& h5 = hdf5();
+    const std::string expected = "data in the file itself";
+    if (const std::string other = file_of(set_.id()); other != file_of(file))
+        refuse(expected, "a link to " + other);
+    if (h5.H5Pget_layout(plan_.id()) == H5D_VIRTUAL || h5.H5Pget_external_count(plan_.id()) > 0)
+        refuse(expected, "a data set whose numbers lie in other files");
 }
 
 /// A shape costs nothing to write: HDF5 makes up what the file does not hold.

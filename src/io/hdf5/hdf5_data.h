@@ -54,6 +54,7 @@ private:
     void open(std::int64_t file, const std::string& path);
     bool read_as(std::uint64_t first, std::uint64_t count, std::int64_t kind, std::size_t size,
                  const char* member, void* into) const;
+    void check_place(std::int64_t file) const;
     void check_blocks() const;
     void check_stored() const;
     std::uint64_t block_bytes() const;

@@ -2,6 +2,7 @@
 #include "src/io/hdf5/hdf5_file.h"
 
 #include "src/core/error.h"
+#include "src/io/file_lock.h"
 #include "src/io/hdf5/hdf5_library.h"
 #include "src/io/input_file.h"
 
@@ -19,9 +20,13 @@ Hdf5File::Hdf5File(const std::string& path) : path_(path) {
     const Lock lock{hdf5_mutex()};
     const Hdf5Library& h5 = hdf5();
     file_ = {h5.H5Fopen(path.c_str(), kHdf5ReadOnly, H5P_DEFAULT), h5.H5Fclose};
-    if (!file_.good())
-        throw Error(ErrorKind::input,
-                    path_ + ": expected an HDF5 file, found one that is cut short or damaged");
+    if (file_.good()) return;
+    throw Error(ErrorKind::input,
+                path_ + (is_locked(path)
+                             ? ": expected an HDF5 file that nobody writes, found one that another "
+                               "program has locked; HDF5_USE_FILE_LOCKING=FALSE in the environment "
+                               "reads what it holds by now"
+                             : ": expected an HDF5 file, found one that is cut short or damaged"));
 }
 
 bool Hdf5File::has(const std::string& name) const {

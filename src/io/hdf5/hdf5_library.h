@@ -33,6 +33,7 @@ namespace eventide {
     X(H5Fclose)                     \
     X(H5Fcreate)                    \
     X(H5Fflush)                     \
+    X(H5Fget_name)                  \
     X(H5Fopen)                      \
     X(H5free_memory)                \
     X(H5Gclose)                     \
@@ -45,6 +46,7 @@ namespace eventide {
     X(H5Pclose)                     \
     X(H5Pcreate)                    \
     X(H5Pget_chunk)                 \
+    X(H5Pget_external_count)        \
     X(H5Pget_filter2)               \
     X(H5Pget_layout)                \
     X(H5Pget_nfilters)              \

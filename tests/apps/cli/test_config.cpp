@@ -110,6 +110,7 @@ TEST(Config, AFlagMayTakeBackWhatTheFileSays) {
 
 TEST(Config, MistakesAreNamedWithTheirLine) {
     EXPECT_EQ(complaint("[example]\nname = \"a\"\n"), "");
+    EXPECT_LT(complaint("[example]\n" + std::string(1 << 20, 'x') + " = 1\n").size(), 500U);
     EXPECT_NE(complaint("[example]\nname = \"a\"\nnmae = \"b\"\n").find("c.toml:3: unknown key"),
               std::string::npos);
     EXPECT_NE(complaint("\nexample.rates = 2\n").find("c.toml:2"), std::string::npos);

@@ -20,6 +20,7 @@ TEST(SinkName, IsKnownByItsPrefixOrItsExtension) {
                                            {"window", SinkKind::window, ""},
                                            {"-", SinkKind::stream, "-"},
                                            {"x.y4m", SinkKind::stream, "x.y4m"},
+                                           {"X.Y4M", SinkKind::stream, "X.Y4M"},
                                            {"gray16:x.mp4", SinkKind::stream, "x.mp4"},
                                            {"x.mp4", SinkKind::video, "x.mp4"},
                                            {"X.GIF", SinkKind::video, "X.GIF"},

@@ -118,6 +118,7 @@ TEST_F(CalibrationFile, SaysWhereItIsWrong) {
     EXPECT_THAT(error_of(with(kKalibr, "[346", "[346.5")),
                 HasSubstr("resolution: expected 1 to 16384, found 346.5"));
     EXPECT_THAT(error_of(with(kKalibr, "[346", "[1e300")), HasSubstr("found 1e+300"));
+    EXPECT_LT(error_of(with(kRos, "640", std::string(1 << 20, 'x'))).size(), 400U);
     EXPECT_THAT(error_of("a: &a [*a, *a]\nimage_width: 3\n"), HasSubstr("expected"));
 }
 
