@@ -35,6 +35,22 @@ bool has_seen_rows(std::span<const std::byte> text) {
     return lines >= kLinesOfStreamToSee;
 }
 
+/// Whether more bytes could say nothing else of the recording than these do. Of a header that is
+/// not whole they could; the next of its lines would begin as the one before.
+bool has_seen_enough(const Format& format, std::span<const std::byte> read,
+                     const OpenOptions& options) {
+    if (format.name == "text") return has_seen_rows(read);
+    if (format.open == nullptr) return true;  // no stream: it is refused
+    try {
+        const std::size_t header = format.open(read, options).header.data_offset;
+        if (read.size() < header + format.looks_at) return false;
+        const bool has_lines = read[0] == std::byte('#') || read[0] == std::byte('%');
+        return !has_lines || read[header] != read[0];
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 /// Most formats hold the events of one camera.
 void check_stream(const ByteFile& file, const Format& format, const OpenOptions& options) {
     if (options.stream.empty() || format.holds.streams) return;
@@ -46,7 +62,8 @@ void check_stream(const ByteFile& file, const Format& format, const OpenOptions&
                                       std::string(format.title));
 }
 
-/// The beginning of the file. Of a pipe only as much as it takes to know the format.
+/// The beginning of the file. Of a pipe only as much as it takes to know what it is: a camera's
+/// may fill slowly.
 std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
     std::vector<std::byte> head;
     if (file.is_seekable()) {
@@ -61,8 +78,9 @@ std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
         if (n == 0) break;
         size += n;
         const auto read = std::span(head).first(size);
-        const Format* format = detect_format(read);
-        if (format && format->name == "text" && has_seen_rows(read)) break;
+        const Format* format =
+            options.format.empty() ? detect_format(read) : find_format(options.format);
+        if (format && has_seen_enough(*format, read, options)) break;
     }
     head.resize(size);
     return head;
