@@ -163,9 +163,12 @@ std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::by
                                               const Format& format, const OpenOptions& options,
                                               ImageSize of_images = {}) {
     OpenedStream stream = open_stream(file, format, head, options);
-    if (file.is_seekable() && stream.header.format == "aedat4")
-        std::ranges::move(compare_aedat4_streams(file, read_aedat4_header(head)),
-                          std::back_inserter(stream.remarks));
+    if (file.is_seekable() && stream.header.format == "aedat4") {
+        const Aedat4Header header = read_aedat4_header(head);
+        std::ranges::move(compare_aedat4_streams(file, header), std::back_inserter(stream.remarks));
+        if (auto joined = find_joined_aedat4(file, header))
+            stream.remarks.push_back(std::move(*joined));
+    }
     complete_geometry(file, stream, options, of_images);
     const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));
