@@ -209,6 +209,12 @@ void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
         damage_.count(DamageReason::bad_record);
         return;
     }
+    const int width = image->pixels.width() / image->channels, height = image->pixels.height();
+    if (image->y0 < 0 || std::uint64_t(image->x0 + width) > validator_.width() ||
+        std::uint64_t(image->y0 + height) > validator_.height()) {
+        damage_.count(DamageReason::out_of_range);
+        return;
+    }
     move_clock(to_us(image->exposure_end));
     into.add_image(std::move(*image));
 }
