@@ -92,6 +92,11 @@ constexpr FormatHolds with_streams(FormatHolds holds) {
 }
 constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 
+/// Where no line says which camera it was, its addresses do.
+constexpr std::size_t kAedat2LooksAt = 4096;
+/// Where no line says what it is, bytes that are no text do.
+constexpr std::size_t kAedat1LooksAt = 64;
+
 // Formats that say what they are come first, text last.
 const std::array kFormats{
     Format{"aedat4", "AEDAT 4", ".aedat4", kAedat4Holds, has_magic<kAedat4FirstLine>, open_aedat4,
@@ -99,7 +104,7 @@ const std::array kFormats{
     Format{"aedat3", "AEDAT 3.1", ".aedat", kAedat3Holds, has_magic<kAedat3Magic>, open_aedat3,
            make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
-           nullptr},
+           nullptr, nullptr, nullptr, kAedat2LooksAt},
     Format{"evt3", "Prophesee RAW EVT3", ".raw", kEvt3Holds, is_evt<kEvt3>, open_evt3,
            make<Evt3Writer>},
     Format{"evt2", "Prophesee RAW EVT2", ".raw", kEventsAndTriggers, is_evt<kEvt2>, open_evt2,
@@ -120,7 +125,8 @@ const std::array kFormats{
     Format{"db3", "ROS 2 bag (SQLite)", ".db3", with_streams(kEverything), has_magic<kSqliteMagic>,
            nullptr, nullptr, open_db3},
     Format{"dat", "Prophesee DAT", ".dat", kEventsAndTriggers, is_dat, open_dat, nullptr},
-    Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
+    Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr,
+           nullptr, nullptr, kAedat1LooksAt},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,
            make<TextWriter>},
 };

@@ -63,6 +63,8 @@ struct Format {
     /// Set instead of make_writer for what is no stream of bytes.
     std::unique_ptr<FileWriter> (*make_file_writer)(OutputFile& file,
                                                     const StreamHeader& header) = nullptr;
+    /// Of the data behind the header, how much `matches` and `open` look at, bytes.
+    std::size_t looks_at = 1;
 
     bool is_written() const { return make_writer != nullptr || make_file_writer != nullptr; }
 };

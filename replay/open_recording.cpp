@@ -35,6 +35,22 @@ bool has_seen_rows(std::span<const std::byte> text) {
     return lines >= kLinesOfStreamToSee;
 }
 
+/// Whether more bytes could say nothing else of the recording than these do. Of a header that is
+/// not whole they could; the next of its lines would begin as the one before.
+bool has_seen_enough(const Format& format, std::span<const std::byte> read,
+                     const OpenOptions& options) {
+    if (format.name == "text") return has_seen_rows(read);
+    if (format.open == nullptr) return true;  // no stream: it is refused
+    try {
+        const std::size_t header = format.open(read, options).header.data_offset;
+        if (read.size() < header + format.looks_at) return false;
+        const bool has_lines = read[0] == std::byte('#') || read[0] == std::byte('%');
+        return !has_lines || read[header] != read[0];
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 /// Most formats hold the events of one camera.
 void check_stream(const ByteFile& file, const Format& format, const OpenOptions& options) {
     if (options.stream.empty() || format.holds.streams) return;
@@ -46,7 +62,8 @@ void check_stream(const ByteFile& file, const Format& format, const OpenOptions&
                                       std::string(format.title));
 }
 
-/// The beginning of the file. Of a pipe only as much as it takes to know the format.
+/// The beginning of the file. Of a pipe only as much as it takes to know what it is: a camera's
+/// may fill slowly.
 std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
     std::vector<std::byte> head;
     if (file.is_seekable()) {
@@ -61,8 +78,9 @@ std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
         if (n == 0) break;
         size += n;
         const auto read = std::span(head).first(size);
-        const Format* format = detect_format(read);
-        if (format && format->name == "text" && has_seen_rows(read)) break;
+        const Format* format =
+            options.format.empty() ? detect_format(read) : find_format(options.format);
+        if (format && has_seen_enough(*format, read, options)) break;
     }
     head.resize(size);
     return head;
@@ -145,9 +163,12 @@ std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::by
                                               const Format& format, const OpenOptions& options,
                                               ImageSize of_images = {}) {
     OpenedStream stream = open_stream(file, format, head, options);
-    if (file.is_seekable() && stream.header.format == "aedat4")
-        std::ranges::move(compare_aedat4_streams(file, read_aedat4_header(head)),
-                          std::back_inserter(stream.remarks));
+    if (file.is_seekable() && stream.header.format == "aedat4") {
+        const Aedat4Header header = read_aedat4_header(head);
+        std::ranges::move(compare_aedat4_streams(file, header), std::back_inserter(stream.remarks));
+        if (auto joined = find_joined_aedat4(file, header))
+            stream.remarks.push_back(std::move(*joined));
+    }
     complete_geometry(file, stream, options, of_images);
     const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));

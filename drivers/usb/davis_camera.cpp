@@ -130,7 +130,6 @@ DavisSensor DavisCamera::read_sensor(UsbDevice& device) const {
     sensor.imu_flip_x = (imu & 4) != 0;
     sensor.imu_flip_y = (imu & 2) != 0;
     sensor.imu_flip_z = (imu & 1) != 0;
-    sensor.adc_mhz = double(features_.adc_mhz) * features_.deviation / 1000;
     constexpr int kLargest = 1024;
     for (const int size :
          {sensor.dvs_columns, sensor.dvs_rows, sensor.aps_columns, sensor.aps_rows})

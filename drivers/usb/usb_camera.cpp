@@ -2,6 +2,8 @@
 
 #include "src/core/error.h"
 
+#include <algorithm>
+#include <cctype>
 #include <thread>
 #include <utility>
 
@@ -272,15 +274,22 @@ void UsbCamera::stop_device() noexcept {
 
 namespace {
 
+/// Whether a serial number can be given on a command line as it is, and is not taken for a place.
+bool is_word(const std::string& serial) {
+    return !serial.empty() && std::ranges::all_of(serial, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+    });
+}
+
 CameraDescription describe(const UsbKind& kind, const UsbIdentity& identity) {
     CameraDescription camera;
     camera.name = kind.name;
     camera.serial = identity.serial;
     camera.bus = identity.bus;
     camera.address = identity.address;
-    camera.source = kind.scheme + (identity.serial.empty() ? std::to_string(identity.bus) + ":" +
-                                                                 std::to_string(identity.address)
-                                                           : identity.serial);
+    camera.source = kind.scheme + (is_word(identity.serial) ? identity.serial
+                                                            : std::to_string(identity.bus) + ":" +
+                                                                  std::to_string(identity.address));
     camera.firmware = std::to_string(identity.firmware);
     camera.problem = identity.problem;
     return camera;

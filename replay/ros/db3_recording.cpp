@@ -8,6 +8,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 
@@ -51,6 +55,17 @@ const Sqlite& sqlite() {
 using File = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
 using Rows = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
+/// Of a recorder that was not closed: what SQLite's journal beside the file still holds. Empty
+/// where there is none.
+std::string journal_text(const std::string& path) {
+    const std::string journal = path + "-wal";
+    std::error_code none;
+    const auto bytes = std::filesystem::file_size(journal, none);
+    if (none || bytes == 0) return {};
+    return journal + ", what the recorder had not moved into the file yet, is not read: sqlite3 " +
+           path + " 'pragma wal_checkpoint' moves it";
+}
+
 /// As an address, in which some characters stand for others.
 std::string address_of(const std::string& path) {
     std::string address = "file:";
@@ -83,6 +98,12 @@ public:
     }
 
     double progress() const override { return count_ < 1 ? 1 : double(read_) / double(count_); }
+
+    std::vector<std::string> remarks() const override {
+        std::vector<std::string> all = RosReader::remarks();
+        if (std::string text = journal_text(path_); !text.empty()) all.push_back(std::move(text));
+        return all;
+    }
 
 protected:
     bool read_part(Damage& damage) override {
@@ -117,11 +138,13 @@ private:
 
     Rows prepare(const char* query) const {
         sqlite3_stmt* made = nullptr;
-        if (sqlite().prepare_v2(file_.get(), query, -1, &made, nullptr) != SQLITE_OK)
-            throw Error(ErrorKind::input,
-                        path_ +
-                            ": expected a ROS 2 bag, found an SQLite file without its tables (" +
-                            sqlite().errmsg(file_.get()) + ")");
+        if (sqlite().prepare_v2(file_.get(), query, -1, &made, nullptr) != SQLITE_OK) {
+            const std::string journal = journal_text(path_);
+            throw Error(
+                ErrorKind::input,
+                path_ + ": expected a ROS 2 bag, found an SQLite file without its tables (" +
+                    sqlite().errmsg(file_.get()) + ")" + (journal.empty() ? "" : "; " + journal));
+        }
         return {made, sqlite().finalize};
     }
 

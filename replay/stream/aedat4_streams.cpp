@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
+#include <string_view>
 
 namespace eventide {
 
@@ -75,6 +77,21 @@ std::vector<std::string> compare_aedat4_streams(const ByteFile& file, const Aeda
             remarks.push_back("the header names a stream " + std::to_string(stream.id) + " ('" +
                               stream.identifier + "'), of which there is no packet");
     return remarks;
+}
+
+std::optional<std::string> find_joined_aedat4(const ByteFile& file, const Aedat4Header& header) {
+    if (header.table_position <= 0) return {};
+    const std::string_view begin = kAedat4Magic;
+    std::string bytes(std::size_t{1} << 20, '\0');
+    const std::uint64_t step = bytes.size() - begin.size();  // one that is cut is seen whole next
+    for (auto at = std::uint64_t(header.table_position); at < file.size(); at += step) {
+        const std::size_t n = file.read_at(at, std::as_writable_bytes(std::span(bytes)));
+        const std::size_t found = std::string_view(bytes).substr(0, n).find(begin);
+        if (found != begin.npos)
+            return "another recording was joined to it, at byte " + std::to_string(at + found) +
+                   ", and is left out: split the file there";
+    }
+    return {};
 }
 
 }  // namespace eventide

@@ -70,7 +70,6 @@ inline std::vector<std::byte> bytes_of(const Words& words) {
 struct Parsed {
     Batch data;
     Damage damaged;
-    DavisStreamFacts facts;
 };
 
 inline Parsed parse_bytes(std::span<const std::byte> bytes, const DavisSensor& sensor,
@@ -81,7 +80,6 @@ inline Parsed parse_bytes(std::span<const std::byte> bytes, const DavisSensor& s
         parser.parse(bytes.subspan(at, std::min(piece, bytes.size() - at)), parsed.data);
     parser.finish(parsed.data);
     parsed.damaged = parser.damaged();
-    parsed.facts = parser.facts();
     return parsed;
 }
 inline Parsed parse(const Words& words, const DavisSensor& sensor = davis240()) {

@@ -26,6 +26,19 @@ TEST(Aedat1, SixByteRecordsOfADvs128) {
     expect_bears_damage(make, bytes, 128, 128);
 }
 
+TEST(Aedat1, OfFilesThatWereJoinedTheHeadersAreNoRecords) {
+    const MakeParser make = [] { return std::make_unique<Aedat1Parser>(); };
+    const Bytes bytes = join({aedat1_record(2, 5000), to_bytes("#!AER-DAT1.0\r\n# a line\r\n"),
+                              aedat1_record(2, 100), aedat1_record(2, 130)});
+    const Parsed parsed = parse_whole(make, bytes);
+    ASSERT_EQ(parsed.data.events.size(), 3U);
+    EXPECT_EQ(parsed.data.events[1].t, from_us(5000));
+    EXPECT_EQ(parsed.data.events[2].t, from_us(5030));
+    EXPECT_EQ(parsed.data.triggers.size(), 1U);
+    EXPECT_EQ(parsed.damage.total(), 0U);
+    expect_same_for_any_split(make, bytes);
+}
+
 TEST(Aedat1, AfterAJumpTimeMayBeEarlier) {
     Aedat1Parser parser;
     Batch batch;

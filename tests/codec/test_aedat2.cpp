@@ -2,6 +2,8 @@
 #include "src/core/error.h"
 #include "tests/codec/aedat2_words.h"
 
+#include <gmock/gmock.h>
+
 namespace eventide::aedat2 {
 namespace {
 
@@ -178,6 +180,56 @@ TEST(Aedat2, DataThatBeginWithAHashAreNoHeader) {
     const Bytes data = join({record(0x23202020, 5), record(0x0A0A0A0A, 6)});
     bytes.insert(bytes.end(), data.begin(), data.end());
     EXPECT_EQ(read_aedat2_header(bytes, 346, 260).stream.data_offset, head.size());
+}
+
+/// Two files one behind the other; the first ends within a record.
+Bytes joined_files(const std::string& second_header, std::int64_t second_begins) {
+    Bytes first = join({dvs(1, 1, true, 1000), dvs(2, 1, true, 1001), dvs(3, 1, true, 1002)});
+    first.pop_back();
+    return join({first, to_bytes(second_header), dvs(4, 1, true, second_begins),
+                 dvs(5, 1, true, second_begins + 7)});
+}
+
+TEST(Aedat2, OfFilesThatWereJoinedTheHeadersAreNoRecords) {
+    constexpr const char* kLines = "#!AER-DAT2.0\r\n# AEChip: Davis240C\r\n";
+    const std::string ended = std::string(kLines) + "#End Of ASCII Header\r\n";
+    for (const std::string& header : {std::string(kLines), ended})
+        for (const std::int64_t begins : {2000, 5}) {
+            const Bytes bytes = joined_files(header, begins);
+            const Parsed parsed = parse_whole(davis(), bytes);
+            const std::int64_t from = std::max<std::int64_t>(begins, 1001);
+            EXPECT_THAT(parsed.data.events,
+                        testing::ElementsAre(Event{from_us(1000), 1, 1, Polarity::on},
+                                             Event{from_us(1001), 2, 1, Polarity::on},
+                                             Event{from_us(from), 4, 1, Polarity::on},
+                                             Event{from_us(from + 7), 5, 1, Polarity::on}));
+            EXPECT_EQ(parsed.data.triggers.size(), begins < 1001 ? 1U : 0U);
+            EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
+            EXPECT_EQ(parsed.damage.total(), 1U);
+            expect_same_for_any_split(davis(), bytes);
+        }
+}
+
+TEST(Aedat2, WhatLooksLikeTheBeginningOfAHeaderIsARecord) {
+    // The address and the first bytes of the time spell "#!AER".
+    const Bytes bytes = join({dvs(1, 1, true, 0x52000000), to_bytes("#!AER"), Bytes(3),
+                              to_bytes("##!A"), to_bytes("R-DA")});
+    for (std::size_t n = 0; n <= bytes.size(); ++n) {
+        const Parsed parsed = parse_whole(davis(), std::span(bytes).first(n));
+        EXPECT_EQ(parsed.damage[DamageReason::truncated], n % 8 == 0 ? 0U : 1U) << n;
+        EXPECT_EQ(parsed.data.events.size() + parsed.damage.total(), (n + 7) / 8) << n;
+    }
+    expect_same_for_any_split(davis(), bytes);
+}
+
+TEST(Aedat2, NoImageIsMadeOfTheEndOfOneFileAndTheBeginningOfTheNext) {
+    const Bytes frame = global_frame(0, 0, 3, 4, 100);
+    const Bytes resets(frame.begin(), frame.begin() + std::ptrdiff_t(frame.size() / 2));
+    const Bytes signals(frame.begin() + std::ptrdiff_t(frame.size() / 2), frame.end());
+    const Parsed parsed =
+        parse_whole(davis(3, 4), join({resets, to_bytes("#!AER-DAT2.0\r\n"), signals}));
+    EXPECT_TRUE(parsed.data.images.empty());
+    EXPECT_EQ(parsed.damage[DamageReason::truncated], 2U);
 }
 
 TEST(Aedat2, WithoutAChipShortAddressesMeanADvs128) {

@@ -134,6 +134,28 @@ TEST(Aedat3, BehindATimestampResetTimeBeginsAnew) {
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
+TEST(Aedat3, OfFilesThatWereJoinedTheSecondMayBeginAtAnEarlierTime) {
+    const auto file = [](std::uint32_t begins) {
+        return to_bytes("#!AER-DAT3.1\r\n#Format: RAW\r\n#Source 1: DAVIS346\r\n#!END-HEADER\r\n") +
+               packet_header(1, 8, 2) +
+               words({polarity(1, 1, true), begins, polarity(1, 1, true), begins + 10});
+    };
+    const Bytes first(file(5000));
+    const std::size_t header = read_aedat3_header(first).stream.data_offset;
+    for (const std::uint32_t begins : {20U, 6000U}) {
+        Bytes bytes = first + file(begins);
+        bytes.erase(bytes.begin(), bytes.begin() + std::ptrdiff_t(header));
+        const Parsed parsed = parse_whole(make_parser(), bytes);
+        ASSERT_EQ(parsed.data.events.size(), 4U);
+        EXPECT_EQ(parsed.data.events[2].t, from_us(begins));
+        EXPECT_EQ(parsed.data.events[3].t, from_us(begins + 10));
+        EXPECT_EQ(parsed.damage.total(), 0U);
+        const std::vector<Trigger> reset{{from_us(begins), Trigger::Kind::timestamp_reset, 0}};
+        EXPECT_EQ(parsed.data.triggers, begins < 5000 ? reset : std::vector<Trigger>{});
+        expect_same_for_any_split(make_parser(), bytes);
+    }
+}
+
 TEST(Aedat3, OnlyTheLastPossibleStampOfAResetIsNone) {
     const Bytes bytes = packet_header(1, 8, 2) +
                         words({polarity(1, 1, true), 5000, polarity(1, 1, true), 5001}) +

@@ -115,6 +115,22 @@ TEST(Aedat3, AFrameThatEndsBeforeItBeginsIsDamage) {
     EXPECT_EQ(parse_whole(make_parser(), bytes).damage[DamageReason::bad_record], 1U);
 }
 
+TEST(Aedat3, AFrameOutsideTheSensorIsDamage) {
+    const auto images_at = [](std::uint32_t x, std::uint32_t y, bool lower_left) {
+        const Bytes bytes = packet_header(2, 36 + 4, 1) +
+                            words({1U | 1U << 1, 0, 9, 0, 9, 2, 1, x, y}) + words({7});
+        const Parsed parsed = parse_whole(make_parser(lower_left), bytes);
+        EXPECT_EQ(parsed.data.images.size() + parsed.damage[DamageReason::out_of_range], 1U);
+        return parsed.data.images.size();
+    };
+    for (const bool lower_left : {false, true}) {
+        EXPECT_EQ(images_at(kWidth - 2, kHeight - 1, lower_left), 1U);
+        EXPECT_EQ(images_at(kWidth - 1, 0, lower_left), 0U);
+        EXPECT_EQ(images_at(0, kHeight, lower_left), 0U);
+        EXPECT_EQ(images_at(5000, 0, lower_left), 0U);
+    }
+}
+
 TEST(Aedat3, AFrameLargerThanItsRecordIsDamage) {
     for (const auto& [width, height] : {std::pair{50U, 50U}, std::pair{3U, 1U}}) {
         const Bytes bytes =

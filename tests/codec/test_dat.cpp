@@ -60,6 +60,17 @@ TEST(Dat, TriggersHaveAnInputAndAnEdge) {
 }
 
 /// Inputs may rise at one time, the first two of a file among them.
+TEST(Dat, ATriggerThatWaitsWhereALossBeginsIsLost) {
+    DatParser parser(Record::triggers);
+    Batch batch;
+    parser.parse(to_stream({7, 1}), batch);
+    parser.resync();
+    parser.parse(to_stream({5, 1, 6, 0}), batch);
+    const std::vector<Trigger> expected{{from_us(5), Trigger::Kind::rising, 0},
+                                        {from_us(6), Trigger::Kind::falling, 0}};
+    EXPECT_EQ(batch.triggers, expected);
+}
+
 TEST(Dat, TriggersOfOneTimeAreNoneBeforeEachOther) {
     DatParser parser(Record::triggers);
     Batch batch;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 namespace eventide::davis_words {
@@ -43,7 +44,7 @@ TEST(DavisFrame, IsResetMinusSignalWithItsTimesAndPlace) {
     EXPECT_EQ(image.pixels(1, 0), wide(200));
     EXPECT_EQ(image.pixels(0, 1), 65535);  // signal 0: over-exposed
     EXPECT_EQ(image.pixels(1, 1), 65535);  // reset level too low: over-exposed before it began
-    EXPECT_EQ(parsed.facts.exposure_us, (1U * 1024 + 10) / 30);
+    EXPECT_EQ(parsed.damaged.total(), 0U);
 }
 
 TEST(DavisFrame, ADavis240sDoubledSamplesAreSubtractedBeforeTheyAreLimited) {
@@ -55,7 +56,7 @@ TEST(DavisFrame, ADavis240sDoubledSamplesAreSubtractedBeforeTheyAreLimited) {
 TEST(DavisFrame, MissingColumnEndLosesTheFrameAndIsCounted) {
     const auto parsed = parse(small_frame(false));
     EXPECT_TRUE(parsed.data.images.empty());
-    EXPECT_EQ(parsed.facts.frames_incomplete, 1U);
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
 }
 
 TEST(DavisFrame, StartingInTheMiddleIsIgnored) {
@@ -130,7 +131,7 @@ TEST(DavisFrame, ReadsThatAreTooFewLoseItAndTheNextIsWhole) {
             EXPECT_EQ(parsed.data.images[0].pixels, image.pixels);
             EXPECT_EQ(to_us(parsed.data.images[0].exposure_begin), 32768 + 120);
             EXPECT_EQ(to_us(parsed.data.images[0].exposure_end), 32768 + 200);
-            EXPECT_EQ(parsed.facts.frames_incomplete, 1U);
+            EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
         }
 }
 
@@ -141,19 +142,69 @@ TEST(DavisFrame, ReadsThatAreTooManyAreNoneOfIt) {
     EXPECT_EQ(parse(frame(kGlobalFrame, kCorners, reads)).data.images.at(0).pixels, image.pixels);
     reads = kReads;
     reads.push_back(kReads.back());
-    EXPECT_EQ(parse(frame(kGlobalFrame, kCorners, reads)).facts.frames_incomplete, 1U);
+    EXPECT_EQ(parse(frame(kGlobalFrame, kCorners, reads)).damaged[DamageReason::bad_record], 1U);
     Words words = frame(kGlobalFrame, kCorners, kReads);
     words.insert(words.begin() + 10, {roi_high(9), adc(5)});  // behind the region, in no column
     EXPECT_EQ(parse(words).data.images.at(0).pixels, image.pixels);
 }
 
-/// In the converter's cycles, of this frame alone.
-TEST(DavisFrame, TheMeasuredExposureIsOfTheLastFrame) {
-    Words words = small_frame();
-    const Words again = small_frame();
+TEST(DavisFrame, ARegionThatChangesIsThatOfEachFrame) {
+    constexpr std::array<int, 4> kOtherCorners{100, 50, 101, 51};
+    Words words = frame(kGlobalFrame, kCorners, kReads);
     words.push_back(0x7001);
-    words.insert(words.end(), again.begin(), again.end());
-    EXPECT_EQ(parse(words).facts.exposure_us, (1U * 1024 + 10) / 30);
+    const Words other = frame(kGlobalFrame, kOtherCorners, kReads);
+    words.insert(words.end(), other.begin(), other.end());
+    const auto parsed = parse(words);
+    ASSERT_EQ(parsed.data.images.size(), 2U);
+    EXPECT_EQ(parsed.data.images[0].x0, 10);
+    EXPECT_EQ(parsed.data.images[1].x0, 100);
+    EXPECT_EQ(parsed.data.images[1].y0, 50);
+    EXPECT_EQ(parsed.data.images[1].pixels, parsed.data.images[0].pixels);
+}
+
+TEST(DavisFrame, OneThatDoesNotEndBeforeTheNextIsCounted) {
+    for (const std::size_t torn_behind : {5U, 12U, 24U}) {
+        Words words = frame(kGlobalFrame, kCorners, kReads);
+        words.resize(torn_behind);
+        words.push_back(0x7001);
+        const Words next = frame(kGlobalFrame, kCorners, kReads);
+        words.insert(words.end(), next.begin(), next.end());
+        const auto parsed = parse(words);
+        ASSERT_EQ(parsed.data.images.size(), 1U) << torn_behind;
+        EXPECT_EQ(parsed.data.images[0].pixels(1, 1), wide(400)) << torn_behind;
+        EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U) << torn_behind;
+        EXPECT_EQ(parsed.damaged.total(), 1U) << torn_behind;
+    }
+}
+
+TEST(DavisFrame, AColumnEndsOnce) {
+    Words words = frame(kGlobalFrame, kCorners, kReads);
+    const auto end = std::find(words.begin(), words.end(), special(kColumnEnd));
+    words.insert(end, special(kColumnEnd));
+    EXPECT_EQ(parse(words).data.images.size(), 1U);
+}
+
+TEST(DavisFrame, BehindALossItWaitsForATime) {
+    DavisParser parser{davis240()};
+    Batch data;
+    parser.parse(bytes_of({time(50)}), data);
+    parser.resync();
+    for (const bool with_time : {false, true}) {
+        Words begun = frame(kGlobalFrame, kCorners, kReads);
+        std::erase_if(begun, [&](std::uint16_t w) { return !with_time && w == time(100); });
+        parser.parse(bytes_of(begun), data);
+        EXPECT_EQ(data.images.size(), with_time ? 1U : 0U);
+        parser.resync();
+    }
+}
+
+/// Marks in an order that no camera's should have.
+TEST(DavisFrame, AnExposureDoesNotEndBeforeItBegins) {
+    Words words = frame(kGlobalFrame, kCorners, kReads);
+    words.insert(words.end() - 1, {time(300), special(kExposureStart), time(310)});
+    const auto image = parse(words).data.images.at(0);
+    EXPECT_EQ(to_us(image.exposure_begin), 300);
+    EXPECT_EQ(to_us(image.exposure_end), 310);
 }
 
 /// A reset of the camera's clock, or a loss.

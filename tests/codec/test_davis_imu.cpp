@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <span>
 
 namespace eventide::davis_words {
 namespace {
@@ -35,7 +36,17 @@ TEST(DavisImu, ComesInUnits) {
 TEST(DavisImu, TruncatedIsCountedAndLeftOut) {
     const auto parsed = parse(imu_words(13));
     EXPECT_TRUE(parsed.data.imu.empty());
-    EXPECT_EQ(parsed.facts.imu_incomplete, 1U);
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
+}
+
+TEST(DavisImu, OneThatDoesNotEndBeforeTheNextIsCounted) {
+    Words words = imu_words();
+    words.pop_back();
+    const Words next = imu_words();
+    words.insert(words.end(), next.begin() + 1, next.end());
+    const auto parsed = parse(words);
+    EXPECT_EQ(parsed.data.imu.size(), 1U);
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
 }
 
 TEST(DavisImu, ReadOfWriteIsTheSameWithinAStepOfTheConverter) {
@@ -58,6 +69,20 @@ TEST(DavisImu, ReadOfWriteIsTheSameWithinAStepOfTheConverter) {
 
 TEST(DavisImu, DoesNotGoOnBehindAResetOrALoss) {
     EXPECT_TRUE(parse_cut_off(imu_words(), 8).imu.empty());
+}
+
+TEST(DavisImu, BehindALossItWaitsForATime) {
+    const Words words = imu_words();
+    const auto without_time = std::span(words).subspan(1);
+    DavisParser parser{DavisSensor{}};
+    Batch data;
+    parser.parse(bytes_of(words), data);
+    parser.resync();
+    parser.parse(bytes_of({without_time.begin(), without_time.end()}), data);
+    EXPECT_EQ(data.imu.size(), 1U);
+    parser.parse(bytes_of(words), data);
+    EXPECT_EQ(data.imu.size(), 2U);
+    EXPECT_EQ(parser.damaged().total(), 0U);
 }
 
 TEST(DavisImu, BytesBeyondTheLastAreNoneOfIt) {

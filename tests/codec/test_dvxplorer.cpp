@@ -99,6 +99,22 @@ TEST(Dvxplorer, AnImuSampleDoesNotGoOnBehindALossOrAReset) {
     EXPECT_TRUE(data.imu.empty());
 }
 
+TEST(Dvxplorer, AnImuSampleBehindALossWaitsForATime) {
+    std::vector<std::uint16_t> words{5, 0x53E0};
+    words.insert(words.end(), 14, 0x5003);
+    words.push_back(7);
+    DvxplorerParser parser{{}};
+    Batch data;
+    parser.parse(bytes_of(words), data);
+    EXPECT_TRUE(data.imu.empty());
+    parser.parse(bytes_of<std::uint16_t>({time(5)}), data);
+    parser.parse(bytes_of(words), data);
+    EXPECT_EQ(data.imu.size(), 1U);
+    parser.resync();
+    parser.parse(bytes_of(words), data);
+    EXPECT_EQ(data.imu.size(), 1U);
+}
+
 TEST(Dvxplorer, OutsideTheSensorIsCounted) {
     const auto parsed = fx3({time(5), column(640), groups(0, 0), group_1(1, false), column(0),
                              groups(60, 0), group_1(3, false)});

@@ -72,6 +72,15 @@ TEST(EventPacket, AHeaderThatCannotBeIsDamageAndTheNextIsFound) {
     }
 }
 
+TEST(EventPacket, DamageBetweenPacketsIsCountedEachTime) {
+    const Bytes good = packet({kStamp, 0}, libcaer_event(1, 2, true, 9)), bad(5, std::byte{7});
+    const Parsed parsed =
+        parse_whole(parser_of(EventPacketEncoding::libcaer), bad + good + bad + good + bad);
+    EXPECT_EQ(parsed.data.events.size(), 2U);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 3U);
+    EXPECT_EQ(parsed.damage.total(), 3U);
+}
+
 TEST(EventPacket, MonoIsShiftedToItsFirstStampAndStaysThere) {
     const Bytes stream =
         packet({5'000'000, kStamp}, mono_event(1, 2, true, 0) + mono_event(3, 4, false, 7'900)) +

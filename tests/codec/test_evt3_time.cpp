@@ -87,6 +87,22 @@ TEST(Evt3, AfterALossItTakesUpAtTheNextTime) {
     EXPECT_TRUE(batch.events == expected);
 }
 
+TEST(Evt3, TheLowBitsOfATimeAreNotThoseFromBeforeALoss) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.parse(to_stream({time_high(7), time_high(7), time_low(900), addr_y(1), addr_x(1)}),
+                 batch);
+    parser.resync();
+    parser.parse(
+        to_stream({time_high(7), addr_y(4), addr_x(5), time_high(7), time_low(20), addr_x(6)}),
+        batch);
+    parser.finish(batch);
+    const std::vector<Event> expected{event(7 * kHigh + 900, 1, 1), event(7 * kHigh, 5, 4),
+                                      event(7 * kHigh + 20, 6, 4)};
+    EXPECT_TRUE(batch.events == expected);
+    EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
 TEST(Evt3, AfterAJumpBackReadingGoesOnThere) {
     Evt3Parser parser(kWidth, kHeight);
     Batch batch;

@@ -97,6 +97,13 @@ TEST_P(FirstCamera, IsNamedByTheFirstEightCharactersOfItsSerialNumber) {
     EXPECT_EQ(DavisCamera{named}.info().serial, "01234567");
 }
 
+TEST_P(FirstCamera, IsListedByItsPlaceWhereItsSerialNumberIsNoWord) {
+    plug_in(davis("12:34"), davis("42 \x1B[m"));
+    std::vector<std::string> sources;
+    for (const CameraDescription& camera : list_davis_cameras()) sources.push_back(camera.source);
+    EXPECT_THAT(sources, testing::UnorderedElementsAre("davis:1:5", "davis:1:6"));
+}
+
 TEST_P(FirstCamera, IsTheOneAtThePlaceThatWasNamed) {
     plug_in(davis("00000042"), davis("00000043"));
     const auto at = [&](int bus, int address) {

@@ -49,6 +49,13 @@ TEST(Aedat4Streams, OfASoundFileNothingIsSaid) {
     EXPECT_TRUE(remarks_of(file_of(false)).empty()) << "streams without packets are usual";
 }
 
+TEST(Aedat4Streams, AFileThatWasJoinedBehindIsNamedWithItsPlace) {
+    const std::string file = file_of(true);
+    const auto remarks = remarks_of(file + file);
+    ASSERT_EQ(remarks.size(), 1U);
+    EXPECT_THAT(remarks[0], HasSubstr("joined to it, at byte " + std::to_string(file.size())));
+}
+
 TEST(Aedat4Streams, EventsOfAnotherCameraAreNamedAndHowTheyAreRead) {
     const auto remarks = remarks_of(changed(file_of(false), "outInfo", "FRME", "EVTS"));
     ASSERT_EQ(remarks.size(), 1U);

@@ -77,6 +77,39 @@ TEST(OpenPipe, APipeOfPacketsIsReadToo) {
     EXPECT_TRUE(read_everything(*open_recording(pipe.path())).events == events);
 }
 
+/// Of what comes in two parts; it is given up where both are not enough.
+std::unique_ptr<Recording> open_in_parts(Pipe& pipe, const std::string& first,
+                                         const std::string& second) {
+    OpenOptions options;
+    int waits = 0;
+    options.give_up = [&] {  // asked before each read
+        if (++waits == 2) pipe.write(second);
+        return waits > 2;
+    };
+    pipe.write(first);
+    auto recording = open_recording(pipe.path(), options);
+    if (waits < 2) pipe.write(second);
+    return recording;
+}
+
+TEST(OpenPipe, ACamerasEventsAreReadAsTheyComeInEveryFormat) {
+    const TestFolder folder;
+    const auto events = some_events(1000);
+    for (const char* format :
+         {"aedat4", "aedat3", "aedat2", "aedat1", "evt3", "evt2", "evt21", "dat", "es", "text"}) {
+        const std::string whole = read_text(write_as(folder, format, events));
+        for (const std::size_t cut : {3U, 20U, 40U, 300U}) {
+            Pipe pipe;
+            // The writer is not done.
+            const auto recording = open_in_parts(pipe, whole.substr(0, cut), whole.substr(cut));
+            EXPECT_EQ(recording->info().width, 128) << format << " cut at " << cut;
+            pipe.close_writing();
+            EXPECT_TRUE(read_everything(*recording).events == events)
+                << format << " cut at " << cut;
+        }
+    }
+}
+
 TEST(OpenPipe, APipeWithoutASizeIsRefusedAndTheOptionNamed) {
     Pipe pipe;
     pipe.write("0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 5 6 1\n");

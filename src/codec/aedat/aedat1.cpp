@@ -54,25 +54,33 @@ StreamHeader read_aedat1_header(std::span<const std::byte> first_bytes) {
     return header;
 }
 
-void Aedat1Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    const auto take = [&](const AedatRecord& record, std::int64_t t) {
-        events_.take(record, t, into, damage_);
+void Aedat1Parser::push(const std::byte* record, Batch& into) {
+    const auto take = [&](const AedatRecord& taken, std::int64_t t) {
+        events_.take(taken, t, into, damage_);
     };
     const auto reset = [&](std::int64_t t) {
         into.triggers.push_back({from_us(t), Trigger::Kind::timestamp_reset, 0});
     };
-    records_.feed(bytes, [&](const std::byte* p) {
-        const AedatRecord record{load_big<std::uint16_t>(p),
-                                 std::int32_t(load_big<std::uint32_t>(p + 2))};
-        timeline_.push(record, damage_, take, reset);
-    });
+    timeline_.push(
+        {load_big<std::uint16_t>(record), std::int32_t(load_big<std::uint32_t>(record + 2))},
+        damage_, take, reset);
+}
+
+void Aedat1Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    records_.feed(
+        bytes, [&](const std::byte* record) { push(record, into); }, [&] { end_of_file(into); });
 }
 
 void Aedat1Parser::finish(Batch& into) {
-    timeline_.finish(
+    records_.finish([&](const std::byte* record) { push(record, into); });
+    end_of_file(into);
+    records_.drop();
+}
+
+void Aedat1Parser::end_of_file(Batch& into) {
+    timeline_.join(
         [&](const AedatRecord& record, std::int64_t t) { events_.take(record, t, into, damage_); });
     if (records_.is_half_read()) damage_.count(DamageReason::truncated);
-    records_.drop();
 }
 
 void Aedat1Parser::resync() {

@@ -2,8 +2,8 @@
 // D.1).
 #pragma once
 
+#include "src/codec/aedat/aedat_records.h"
 #include "src/codec/aedat/aedat_timeline.h"
-#include "src/codec/fixed_records.h"
 #include "src/codec/parser.h"
 #include "src/codec/stream.h"
 
@@ -50,7 +50,10 @@ public:
     const Damage& damaged() const override { return damage_; }
 
 private:
-    FixedRecords<6> records_;
+    void push(const std::byte* record, Batch& into);
+    void end_of_file(Batch& into);
+
+    AedatRecords<6> records_;
     AedatTimeline timeline_;
     Dvs128Events events_;
     Damage damage_;

@@ -139,24 +139,32 @@ void Aedat2Parser::take(const AedatRecord& record, std::int64_t t_us, Batch& int
         take_davis(record.address, t_us, into);
 }
 
-void Aedat2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    const auto take_record = [&](const AedatRecord& record, std::int64_t t) {
-        take(record, t, into);
+void Aedat2Parser::push(const std::byte* record, Batch& into) {
+    const auto take_record = [&](const AedatRecord& taken, std::int64_t t) {
+        take(taken, t, into);
     };
     const auto reset = [&](std::int64_t t) {
         into.triggers.push_back({from_us(t), Trigger::Kind::timestamp_reset, 0});
     };
-    records_.feed(bytes, [&](const std::byte* p) {
-        const AedatRecord record{load_big<std::uint32_t>(p),
-                                 std::int32_t(load_big<std::uint32_t>(p + 4))};
-        timeline_.push(record, damage_, take_record, reset);
-    });
+    timeline_.push(
+        {load_big<std::uint32_t>(record), std::int32_t(load_big<std::uint32_t>(record + 4))},
+        damage_, take_record, reset);
+}
+
+void Aedat2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    records_.feed(
+        bytes, [&](const std::byte* record) { push(record, into); }, [&] { end_of_file(into); });
 }
 
 void Aedat2Parser::finish(Batch& into) {
-    timeline_.finish([&](const AedatRecord& record, std::int64_t t) { take(record, t, into); });
-    if (records_.is_half_read()) damage_.count(DamageReason::truncated);
+    records_.finish([&](const std::byte* record) { push(record, into); });
+    end_of_file(into);
     records_.drop();
+}
+
+void Aedat2Parser::end_of_file(Batch& into) {
+    timeline_.join([&](const AedatRecord& record, std::int64_t t) { take(record, t, into); });
+    if (records_.is_half_read()) damage_.count(DamageReason::truncated);
     frame_.finish(into, damage_);
     imu_.finish(damage_);
 }

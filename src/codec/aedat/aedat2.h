@@ -5,8 +5,8 @@
 #include "src/codec/aedat/aedat1.h"
 #include "src/codec/aedat/aedat2_frame.h"
 #include "src/codec/aedat/aedat2_imu.h"
+#include "src/codec/aedat/aedat_records.h"
 #include "src/codec/aedat/aedat_timeline.h"
-#include "src/codec/fixed_records.h"
 #include "src/codec/parser.h"
 #include "src/codec/stream.h"
 
@@ -39,6 +39,8 @@ public:
     const Damage& damaged() const override { return damage_; }
 
 private:
+    void push(const std::byte* record, Batch& into);
+    void end_of_file(Batch& into);
     void take(const AedatRecord& record, std::int64_t t_us, Batch& into);
     void take_davis(std::uint32_t address, std::int64_t t_us, Batch& into);
     void add_event(std::uint32_t address, std::int64_t t_us, Batch& into);
@@ -49,7 +51,7 @@ private:
     Aedat2Sensor sensor_;
     std::uint32_t width_, height_;  ///< px, of the chip
     std::uint32_t shown_width_, shown_height_;
-    FixedRecords<8> records_;
+    AedatRecords<8> records_;
     AedatTimeline timeline_;
     Dvs128Events dvs128_;
     Aedat2FrameAssembler frame_;

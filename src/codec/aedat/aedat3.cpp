@@ -5,6 +5,8 @@
 #include "src/core/byte_order.h"
 
 #include <algorithm>
+#include <cstring>
+#include <string_view>
 
 namespace eventide {
 
@@ -20,6 +22,11 @@ struct PolarityWord {
     std::uint32_t x() const { return bits >> 17; }
     std::uint32_t y() const { return (bits >> 2) & 0x7FFF; }
 };
+
+bool begins_file(std::span<const std::byte> bytes) {
+    constexpr std::string_view kFirstLine = "#!AER-DAT3.";
+    return std::memcmp(bytes.data(), kFirstLine.data(), kFirstLine.size()) == 0;
+}
 
 }  // namespace
 
@@ -61,10 +68,13 @@ std::span<const std::byte> Aedat3Parser::read_header(std::span<const std::byte> 
     const Aedat3Packet packet = read_aedat3_packet(unit_.data());
     if (is_plausible(packet)) {
         begin_packet(packet);
-    } else {
-        damage_.count(DamageReason::bad_length);
-        state_ = State::searching;
+        return bytes;
     }
+    state_ = State::searching;
+    if (begins_file(unit_))
+        is_joined_ = true;
+    else
+        damage_.count(DamageReason::bad_length);
     return bytes;
 }
 
@@ -94,16 +104,18 @@ std::span<const std::byte> Aedat3Parser::pass_over(std::span<const std::byte> by
     return bytes.subspan(n);
 }
 
-/// A reset sets the camera's clock to zero, and a new stream begins. Files written after the fact
-/// have no step back, and need nothing.
+/// A reset sets the camera's clock to zero, and a new stream begins; so does a file that was joined
+/// to this one. Files written after the fact have no step back, and need nothing.
 void Aedat3Parser::begin_anew_after_reset(std::int64_t t_us, Batch& into) {
     const auto last = validator_.newest_us();
-    if (was_reset_ && last && t_us < *last) {
+    if (may_begin_anew() && last && t_us < *last) {
         validator_.finish(into, damage_);
         validator_.resync(damage_);
         newest_us_.reset();
+        if (!was_reset_)
+            into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
     }
-    was_reset_ = false;
+    was_reset_ = is_joined_ = false;
 }
 
 void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
@@ -157,7 +169,7 @@ void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& i
     const std::byte* const end = record + records.size();
     while (record < end) {
         const auto stamp = load_little<std::uint32_t>(record + 4);
-        if (!lower_left_ && !was_reset_ && validator_.is_plain(base_us_ + stamp)) {
+        if (!lower_left_ && !may_begin_anew() && validator_.is_plain(base_us_ + stamp)) {
             const auto left = std::size_t(end - record) / kBytes;
             const std::byte* const block_end = record + std::min(kBlock, left) * kBytes;
             record = take_plain_events(record, block_end, into);
@@ -195,6 +207,12 @@ void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
     auto image = read_frame(record, base_us_, lower_left_, int(rows_));
     if (!image) {
         damage_.count(DamageReason::bad_record);
+        return;
+    }
+    const int width = image->pixels.width() / image->channels, height = image->pixels.height();
+    if (image->y0 < 0 || std::uint64_t(image->x0 + width) > validator_.width() ||
+        std::uint64_t(image->y0 + height) > validator_.height()) {
+        damage_.count(DamageReason::out_of_range);
         return;
     }
     move_clock(to_us(image->exposure_end));
@@ -279,7 +297,7 @@ void Aedat3Parser::finish(Batch& into) {
 void Aedat3Parser::resync() {
     unit_.clear();
     state_ = State::searching;
-    was_reset_ = false;
+    was_reset_ = is_joined_ = false;
     newest_us_.reset();
     validator_.resync(damage_);
 }

@@ -32,8 +32,8 @@ Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes,
                                 std::string_view source = {});
 
 /// Reads the packets of one source: those of others that the header names are passed over, and of
-/// any other count as unknown_word. Events that a timestamp reset sets back in time begin a new
-/// stream. Packets of types beyond IMU9 are passed over.
+/// any other count as unknown_word. Events that a timestamp reset, or another file joined to the
+/// first, sets back in time begin a new stream. Packets of types beyond IMU9 are passed over.
 class Aedat3Parser final : public Parser {
 public:
     /// Size in px; of a sensor that the header says to be larger, its upper left part.
@@ -59,6 +59,7 @@ private:
     void take_event(const std::byte* record, Batch& into);
     void take_special(const std::byte* record, Batch& into);
     void take_frame(std::span<const std::byte> record, Batch& into);
+    bool may_begin_anew() const { return was_reset_ || is_joined_; }
     void begin_anew_after_reset(std::int64_t t_us, Batch& into);
     void move_clock(std::int64_t t_us);
 
@@ -75,6 +76,7 @@ private:
     std::uint64_t left_ = 0;       ///< records of it to come; in passing_over: bytes
     std::int64_t base_us_ = 0;     ///< what its overflow adds
     bool was_reset_ = false;       ///< since the last packet of events
+    bool is_joined_ = false;       ///< another file begins, since the last packet of events
     std::optional<std::int64_t> newest_us_;
 };
 

@@ -5,7 +5,6 @@
 #include "src/core/bayer.h"
 #include "src/core/byte_order.h"
 
-#include <algorithm>
 #include <array>
 
 namespace eventide {
@@ -124,7 +123,7 @@ std::optional<ReferenceImage> read_frame(std::span<const std::byte> record, std:
     if (image.exposure_end < image.exposure_begin) return {};
     image.t = image.exposure_begin + (image.exposure_end - image.exposure_begin) / 2;
     image.x0 = int(x0);
-    image.y0 = lower_left ? std::max(0, height - int(y0 + rows)) : int(y0);
+    image.y0 = lower_left ? height - int(y0 + rows) : int(y0);
     image.channels = int(channels);
     if (channels == 1 && !lower_left)
         image.filter = colour_filter_of_number((word(0) >> 4) & 15).value_or(ColourFilter::none);

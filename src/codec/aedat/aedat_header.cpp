@@ -7,13 +7,21 @@ namespace eventide {
 
 namespace {
 
-bool is_text_line(std::string_view line) {
-    return std::all_of(line.begin(), line.end(), [](char c) {
-        return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\r';
-    });
+std::string_view without_return(std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
 }
 
 }  // namespace
+
+bool is_aedat_text(char c) {
+    return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\r';
+}
+
+bool is_last_aedat_line(std::string_view line) {
+    line = without_return(line);
+    return line == "#End Of ASCII Header" || line == "#!END-HEADER";
+}
 
 AedatHeaderLines read_aedat_lines(std::span<const std::byte> first_bytes) {
     const std::string_view text(reinterpret_cast<const char*>(first_bytes.data()),
@@ -22,13 +30,11 @@ AedatHeaderLines read_aedat_lines(std::span<const std::byte> first_bytes) {
     while (header.end < text.size() && text[header.end] == '#') {
         const std::size_t newline = text.find('\n', header.end);
         if (newline == text.npos) break;
-        std::string_view line = text.substr(header.end, newline - header.end);
-        if (!is_text_line(line)) break;
+        const std::string_view line = text.substr(header.end, newline - header.end);
+        if (!std::ranges::all_of(line, is_aedat_text)) break;
         header.end = newline + 1;
-        line.remove_prefix(1);
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        header.lines.push_back(line);
-        if (line == "End Of ASCII Header" || line == "!END-HEADER") break;
+        header.lines.push_back(without_return(line.substr(1)));
+        if (is_last_aedat_line(line)) break;
     }
     return header;
 }

@@ -15,6 +15,11 @@ struct AedatHeaderLines {
     std::size_t end = 0;                  ///< bytes up to the first record
 };
 
+/// Whether a line of text may have it.
+bool is_aedat_text(char c);
+/// Of a line without its '\n', whether records follow it, whatever they begin with.
+bool is_last_aedat_line(std::string_view line);
+
 /// Lines that begin with '#' and are text; "#End Of ASCII Header" and "#!END-HEADER" are the last
 /// where they are. Binary data that happen to begin with '#' are not taken for a line.
 AedatHeaderLines read_aedat_lines(std::span<const std::byte> first_bytes);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace eventide {
 
@@ -32,14 +33,22 @@ public:
     /// reset(t) before a record after a reset. t may lie before an earlier one.
     template <typename Take, typename Reset>
     void push(const AedatRecord& record, Damage& damage, Take&& take, Reset&& reset) {
+        if (std::exchange(joined_, false) && started_ && record.stamp < last_stamp_)
+            begin_anew(record.stamp, reset);
         if ((held_ || step_to(record.stamp) > kLongestStep) && !settle(record, damage, take))
             return;
         const std::int64_t step = step_to(record.stamp);
-        if (started_ && step < 0 && goes_on_in_the_past(record.stamp, step)) {
-            last_stamp_ = record.stamp;
-            reset(last_);
-        }
+        if (started_ && step < 0 && goes_on_in_the_past(record.stamp, step))
+            begin_anew(record.stamp, reset);
         place(record, take);
+    }
+
+    /// The next record is of another file, whose clock may have begun anew: then time goes on from
+    /// where it was.
+    template <typename Take>
+    void join(Take&& take) {
+        finish(take);
+        joined_ = true;
     }
 
     /// The stream ended: nothing can contradict the record held back.
@@ -83,6 +92,12 @@ private:
         return false;
     }
 
+    template <typename Reset>
+    void begin_anew(std::int32_t stamp, Reset& reset) {
+        last_stamp_ = stamp;
+        reset(last_);
+    }
+
     bool goes_on_in_the_past(std::int32_t stamp, std::int64_t step) {
         if (step >= -kJitter) return false;
         const bool goes_on =
@@ -112,6 +127,7 @@ private:
     std::optional<AedatRecord> held_;
     int steps_back_ = 0;
     std::int32_t past_stamp_ = 0;
+    bool joined_ = false;  ///< since the record before
 };
 
 }  // namespace eventide

@@ -102,10 +102,9 @@ void DavisParser::word(std::uint16_t w, Batch& into) {
         case misc8_code:
             return misc8(data);
         case misc10_code:
-            if ((data >> 10) == 0) return frame_.exposure_chunk(data);
+            if ((data >> 10) == 0) return;  // the exposure that the camera measured
             return damage_.count(DamageReason::unknown_word);
         default:  // wrap_code: there are no more
-            facts_.wraps += data;
             return clock_.wrap(data, damage_);
     }
 }
@@ -135,7 +134,6 @@ void DavisParser::event(std::uint16_t x, Polarity polarity, Batch& into) {
 }
 
 void DavisParser::timestamp_reset(Batch& into) {
-    ++facts_.timestamp_resets;
     clock_.reset();
     frame_.abandon();
     imu_.abandon();
@@ -144,6 +142,15 @@ void DavisParser::timestamp_reset(Batch& into) {
 
 void DavisParser::trigger(Trigger::Kind kind, std::uint8_t source, Batch& into) {
     if (clock_.is_known()) into.triggers.push_back({clock_.now(), kind, source});
+}
+
+void DavisParser::begin_frame(DavisFrameAssembler::Shutter shutter) {
+    if (clock_.is_known()) note_loss(frame_.begin(shutter, clock_.now()));
+}
+
+/// Of an image or IMU sample that words are missing of.
+void DavisParser::note_loss(bool is_lost) {
+    if (is_lost) damage_.count(DamageReason::bad_record);
 }
 
 void DavisParser::special(std::uint16_t data, Batch& into) {
@@ -162,33 +169,23 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
         case 4:
             return trigger(Trigger::Kind::pulse, kInput, into);
         case 5:
-            return imu_.begin();
+            return note_loss(imu_.begin());
         case 7: {
             ImuSample sample;
             const auto end = imu_.end(now, sample);
-            if (end == DavisImuAssembler::End::complete) into.imu.push_back(sample);
-            if (end == DavisImuAssembler::End::incomplete) {
-                ++facts_.imu_incomplete;
-                damage_.count(DamageReason::bad_record);
-            }
-            return;
+            if (end == DavisImuAssembler::End::complete && clock_.is_known())
+                into.imu.push_back(sample);
+            return note_loss(end == DavisImuAssembler::End::incomplete);
         }
         case 8:
-            return frame_.begin(Frame::Shutter::global, now);
+            return begin_frame(Frame::Shutter::global);
         case 9:
-            return frame_.begin(Frame::Shutter::rolling, now);
+            return begin_frame(Frame::Shutter::rolling);
         case 10: {
             ReferenceImage image;
             const auto end = frame_.end(now, image);
-            if (end == Frame::End::complete) {
-                facts_.exposure_us = frame_.measured_exposure_us();
-                into.add_image(std::move(image));
-            }
-            if (end == Frame::End::incomplete) {
-                ++facts_.frames_incomplete;
-                damage_.count(DamageReason::bad_record);
-            }
-            return;
+            if (end == Frame::End::complete) into.add_image(std::move(image));
+            return note_loss(end == Frame::End::incomplete);
         }
         case 11:
             return frame_.column_begin(Frame::Read::reset);
@@ -198,8 +195,8 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
             return frame_.column_end();
         case 14:
             return frame_.exposure_begin(now);
-        case 15:
-            return frame_.exposure_end(now);
+        case 15:  // the first signal read says it
+            return;
         case 16:
             return trigger(Trigger::Kind::falling, Trigger::kGenerator, into);
         case 17:

@@ -16,16 +16,6 @@
 
 namespace eventide {
 
-/// What came through besides data, for the driver's counters.
-struct DavisStreamFacts {
-    std::uint64_t timestamp_resets = 0;  ///< reset markers: the first one proves that data flow
-    std::uint64_t wraps = 0;             ///< of the 15-bit time
-    std::uint64_t frames_incomplete =
-        0;  ///< APS frames left out because columns or samples were missing
-    std::uint64_t imu_incomplete = 0;
-    std::uint32_t exposure_us = 0;  ///< of the last frame, as the device measured it; 0 before
-};
-
 /// Parses the 16-bit little-endian words of DAVIS240 and DAVIS346 (logic 18).
 ///
 /// Time is 64 bits here, so the 2^31 us overflow of older readers does not exist. A timestamp reset
@@ -41,7 +31,6 @@ public:
     void resync() override;
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
-    const DavisStreamFacts& facts() const { return facts_; }
 
     void arrives(HostTime at) override { clock_.arrives(at, damage_); }
 
@@ -60,6 +49,8 @@ private:
     std::size_t plain_words(std::span<const std::byte> bytes, Batch& into);
     void word(std::uint16_t word, Batch& into);
     void misc8(std::uint16_t data);
+    void begin_frame(DavisFrameAssembler::Shutter shutter);
+    void note_loss(bool is_lost);
     void special(std::uint16_t data, Batch& into);
     void event(std::uint16_t x, Polarity polarity, Batch& into);
     void trigger(Trigger::Kind kind, std::uint8_t source, Batch& into);
@@ -69,7 +60,6 @@ private:
     DavisFrameAssembler frame_;
     DavisImuAssembler imu_;
     Damage damage_;
-    DavisStreamFacts facts_;
     WholeWords<2> words_;
     IniVationClock<15> clock_;
     std::uint16_t y_ = 0;

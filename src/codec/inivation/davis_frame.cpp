@@ -3,6 +3,7 @@
 #include "src/codec/inivation/davis_pixel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -28,8 +29,8 @@ void DavisFrameAssembler::use_roi(int x0, int y0, int x1, int y1) {
         samples.assign(std::size_t(device_columns()) * std::size_t(device_rows()), 0);
 }
 
-void DavisFrameAssembler::begin(Shutter shutter, SensorTime t) {
-    active_ = true;
+bool DavisFrameAssembler::begin(Shutter shutter, SensorTime t) {
+    const bool was_active = std::exchange(active_, true);
     shutter_ = shutter;
     roi_count_ = 0;
     columns_ = {};
@@ -37,8 +38,7 @@ void DavisFrameAssembler::begin(Shutter shutter, SensorTime t) {
     in_column_ = short_column_ = false;
     sampled_ = {};
     exposure_begin_ = exposure_end_ = t;
-    exposure_cycles_ = 0;
-    exposure_shift_ = 0;
+    return was_active;
 }
 
 void DavisFrameAssembler::roi_byte(std::uint8_t value) {
@@ -80,16 +80,6 @@ void DavisFrameAssembler::column_end() {
     in_column_ = false;
     if (row_ < device_rows()) short_column_ = true;
     ++columns_[std::size_t(read_)];
-}
-
-void DavisFrameAssembler::exposure_chunk(std::uint16_t bits) {
-    if (!active_ || exposure_shift_ > 30) return;
-    exposure_cycles_ |= std::uint32_t(bits & 0x3FF) << exposure_shift_;
-    exposure_shift_ += 10;
-}
-
-std::uint32_t DavisFrameAssembler::measured_exposure_us() const {
-    return sensor_.adc_mhz > 0 ? std::uint32_t(double(exposure_cycles_) / sensor_.adc_mhz) : 0;
 }
 
 DavisFrameAssembler::End DavisFrameAssembler::end(SensorTime t, ReferenceImage& into) {

@@ -20,22 +20,19 @@ public:
 
     explicit DavisFrameAssembler(const DavisSensor& sensor);
 
-    void begin(Shutter shutter, SensorTime t);
+    /// True where the frame before did not end: it is lost.
+    bool begin(Shutter shutter, SensorTime t);
     void roi_byte(std::uint8_t value);  ///< misc8 kinds 1 and 2
     void column_begin(Read read);
     void sample(std::uint16_t adc, SensorTime t);  ///< 10 bits
     void column_end();
     void exposure_begin(SensorTime t) { exposure_begin_ = t; }
-    void exposure_end(SensorTime t) { exposure_end_ = t; }
-    void exposure_chunk(std::uint16_t bits);  ///< misc10: least significant 10 bits first
 
     /// The frame is over. Complete: `into` is filled; incomplete: columns or samples were missing;
     /// none: no frame began.
     End end(SensorTime t, ReferenceImage& into);
 
     void abandon() { active_ = false; }
-    bool active() const { return active_; }
-    std::uint32_t measured_exposure_us() const;
 
 private:
     int roi_width() const { return roi_[2] - roi_[0] + 1; }
@@ -61,8 +58,6 @@ private:
     std::array<std::vector<std::uint16_t>, 2> samples_;  ///< per read: [column][row]
     SensorTime exposure_begin_{}, exposure_end_{};
     std::array<bool, 2> sampled_{};  ///< per read: a sample of this frame came
-    std::uint32_t exposure_cycles_ = 0;
-    int exposure_shift_ = 0;
 };
 
 }  // namespace eventide

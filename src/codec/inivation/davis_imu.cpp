@@ -1,14 +1,17 @@
 #include "src/codec/inivation/davis_imu.h"
 
+#include <utility>
+
 namespace eventide {
 namespace {
 constexpr int kAccelEnd = 6, kTemperatureEnd = 8, kGyroEnd = 14;
 }
 
-void DavisImuAssembler::begin() {
-    active_ = true;
+bool DavisImuAssembler::begin() {
+    const bool was_active = std::exchange(active_, true);
     count_ = 0;
     bytes_.fill(0);
+    return was_active;
 }
 
 /// Parts present 7-5 (accel, gyro, temperature). MPU: accel scale 3-2, gyro scale 1-0; BMI160: 4-3

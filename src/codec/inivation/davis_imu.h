@@ -15,7 +15,7 @@ public:
 
     explicit DavisImuAssembler(const DavisSensor& sensor) : sensor_(sensor) {}
 
-    void begin();
+    bool begin();                   ///< true where the sample before did not end: it is lost
     void scale(std::uint8_t bits);  ///< misc8 kind 3
     void byte(std::uint8_t value);  ///< misc8 kind 0
     End end(SensorTime t, ImuSample& into);

@@ -36,8 +36,6 @@ struct DavisSensor {
     int imu_type = kImuMpu6050;
     bool imu_flip_x = false, imu_flip_y = false,
          imu_flip_z = false;  ///< IMU orientation bits 2, 1, 0
-    double adc_mhz =
-        30;  ///< real clock: nominal x deviation / 1000; the unit of measured exposures
 
     int width() const { return dvs_swapped ? dvs_rows : dvs_columns; }  ///< px, as a person sees it
     int height() const { return dvs_swapped ? dvs_columns : dvs_rows; }

@@ -77,7 +77,7 @@ void DvxplorerParser::imu_end(Batch& into) {
     ImuSample sample;
     switch (imu_.end(clock_.now(), sample)) {
         case DavisImuAssembler::End::complete:
-            into.imu.push_back(sample);
+            if (clock_.is_known()) into.imu.push_back(sample);
             return;
         case DavisImuAssembler::End::incomplete:
             return damage_.count(DamageReason::bad_record);
@@ -104,7 +104,8 @@ void DvxplorerParser::special(std::uint16_t data, Batch& into) {
         case 4:
             return trigger(Trigger::Kind::pulse, 0);
         case 5:
-            return imu_.begin();
+            if (imu_.begin()) damage_.count(DamageReason::bad_record);
+            return;
         case 7:
             return imu_end(into);
         case 16:

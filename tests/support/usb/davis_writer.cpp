@@ -116,7 +116,8 @@ void DavisWriter::image_signal(const ReferenceImage& image, std::vector<std::byt
     put_special(15, out);
     columns(image, true, out);
     const double exposure_us = double((image.exposure_end - image.exposure_begin).count());
-    const auto cycles = std::uint32_t(exposure_us * sensor_.adc_mhz);
+    constexpr double kAdcMhz = 30;
+    const auto cycles = std::uint32_t(exposure_us * kAdcMhz);
     for (int shift : {0, 10, 20}) put(6, int((cycles >> shift) & 0x3FF), out);
     put_special(10, out);
 }
