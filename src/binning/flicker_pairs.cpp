@@ -33,9 +33,9 @@ SensorDuration FlickerPairs::delay() const {
     return SensorDuration{std::int64_t(kOfAPeriod * period_.us())};
 }
 
+/// Of two of a pixel, the first of which is still held and so no older than delay().
 bool FlickerPairs::is_pair(const Event& a, const Event& b) const {
-    return a.polarity != b.polarity && b.t - a.t <= delay() &&
-           is_between(double((b.t - a.t).count()), period_.us());
+    return a.polarity != b.polarity && is_between(double((b.t - a.t).count()), period_.us());
 }
 
 void FlickerPairs::process(std::vector<Event>& events) {
