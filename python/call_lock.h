@@ -3,9 +3,10 @@
 
 #include <eventide/error.h>
 
+#include <pybind11/pybind11.h>
+
 #include <atomic>
 #include <mutex>
-#include <thread>
 
 namespace eventide::python {
 
@@ -20,17 +21,19 @@ public:
                         "expected one call at a time, found one within another of the same object, "
                         "as by the handler of a signal");
         mutex_.lock();
-        holder_ = std::this_thread::get_id();
+        holder_ = PyThread_get_thread_ident();
     }
     void unlock() {
-        holder_ = std::thread::id{};
+        holder_ = kNobody;
         mutex_.unlock();
     }
-    bool is_held_here() const { return holder_ == std::this_thread::get_id(); }
+    bool is_held_here() const { return holder_ == PyThread_get_thread_ident(); }
 
 private:
+    static constexpr unsigned long kNobody = PYTHREAD_INVALID_THREAD_ID;
+
     std::mutex mutex_;
-    std::atomic<std::thread::id> holder_{};
+    std::atomic<unsigned long> holder_{kNobody};
 };
 
 }  // namespace eventide::python
