@@ -5,6 +5,7 @@
 #include "src/core/number_text.h"
 #include "src/io/output_file.h"
 #include "src/io/shallow_json.h"
+#include "src/io/system_words.h"
 
 #include <nlohmann/json.hpp>
 
@@ -144,7 +145,7 @@ RunFolder::RunFolder(fs::path folder, bool overwrite, RunFolderFiles files)
         prepare(overwrite);
     } catch (const fs::filesystem_error& error) {
         throw Error(ErrorKind::failed,
-                    folder_.string() + ": cannot be read: " + error.code().message());
+                    folder_.string() + ": cannot be read: " + system_words(error.code().value()));
     }
     if (::access(folder_.c_str(), W_OK | X_OK) != 0)
         throw Error(ErrorKind::failed, folder_.string() + ": cannot be written to: " +

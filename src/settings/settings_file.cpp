@@ -36,7 +36,9 @@ SettingValue value_of(const std::string& path, const std::string& name, const to
         value.kind = ValueKind::table;
         for (const auto& [key, item] : *table) {
             const std::string own{key.str()};
-            value.items.push_back(value_of(path, name.empty() ? own : name + "." + own, item));
+            std::string full = name;
+            if (!full.empty()) full += '.';
+            value.items.push_back(value_of(path, full += own, item));
             value.items.back().key = own;
         }
     } else {

@@ -216,8 +216,9 @@ TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
         EXPECT_EQ(report.data.restarts(), format.holds.clock_resets ? 0U : 1U);
         const Batch there = read_everything(*open_recording(file));
         EXPECT_EQ(there.events.size(), events);
-        if (!format.holds.clock_resets)
+        if (!format.holds.clock_resets) {
             EXPECT_TRUE(std::ranges::is_sorted(there.events, {}, &Event::t));
+        }
     }
 }
 
