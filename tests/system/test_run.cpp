@@ -178,7 +178,7 @@ TEST_F(Run, OpensAPipeForItsReaderBeforeAnythingIsWrittenToItsSource) {
     for (const std::string command :
          {"run in --fps 10 --out gray8:out", "convert in out --to-format text"}) {
         const Result result = in_shell("rm -f in out; mkfifo in out; eventide " + command +
-                                       " & exec 3<out; cat recording > in; wc -c <&3; wait");
+                                       " & exec 3<out; cat recording > in & wc -c <&3; wait");
         ASSERT_EQ(result.exit_code, 0) << result.error;
         EXPECT_GT(std::stol(result.output), 1000) << command;
     }
