@@ -109,7 +109,7 @@ void FastRenderer::put(const Job& job, const Span& span, const Rows& blended,
     std::copy(blended.mu + begin, blended.mu + end, target.intensity + row + begin);
     if (target.sigma == nullptr) return;
     float* sigma = target.sigma + row;
-    if (job.rule == SigmaRule::log_blend) {
+    if (blended.square == nullptr) {  // ln sigma is blended
         numbers_.kernels().scaled_exp(blended.log_sigma + begin, config_.sigma_scale, sigma + begin,
                                       end - begin);
         return;
