@@ -72,9 +72,8 @@ void Aedat1Parser::parse(std::span<const std::byte> bytes, Batch& into) {
 }
 
 void Aedat1Parser::finish(Batch& into) {
-    records_.finish([&](const std::byte* record) { push(record, into); });
-    end_of_file(into);
-    records_.drop();
+    records_.finish([&](const std::byte* record) { push(record, into); },
+                    [&] { end_of_file(into); });
 }
 
 void Aedat1Parser::end_of_file(Batch& into) {

@@ -157,9 +157,8 @@ void Aedat2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
 }
 
 void Aedat2Parser::finish(Batch& into) {
-    records_.finish([&](const std::byte* record) { push(record, into); });
-    end_of_file(into);
-    records_.drop();
+    records_.finish([&](const std::byte* record) { push(record, into); },
+                    [&] { end_of_file(into); });
 }
 
 void Aedat2Parser::end_of_file(Batch& into) {

@@ -25,9 +25,11 @@ public:
             bytes = in_header_ ? pass_header(bytes, use) : pass_records(bytes, use, joint);
     }
     /// The stream is over: what looked like the beginning of a header was none.
-    template <typename Use>
-    void finish(Use&& use) {
+    template <typename Use, typename Joint>
+    void finish(Use&& use, Joint&& joint) {
         give_back(use);
+        joint();
+        drop();
     }
 
     bool is_half_read() const { return words_.is_half_read(); }
