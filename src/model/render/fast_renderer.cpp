@@ -188,7 +188,7 @@ void FastRenderer::find_outdated(const CodeChoice& codes, const Job& job,
             if (is_kept) continue;
             stamp.fraction = fraction;
             if (first_row == last_row) continue;  // beside the part of the frame that is asked for
-            const bool begins_before = (shows_end ? job.still_t : job.t).weight[0] != 0;
+            const bool begins_before = job.time(shows_end).weight[0] != 0;
             const bool has_end = job.keeps_end && note_end(std::size_t(r * columns + c),
                                                            codes.k - (begins_before ? 1 : 0));
             if (spans_.size() > begin && spans_.back().last == c &&

@@ -50,6 +50,8 @@ private:
         AxisSamples t, still_t;  ///< of its time, and of the window's end
         bool keeps_end;          ///< what windows show at their ends is kept
         std::array<const FirstLayerCache::WindowSums*, 2> sums;  ///< of the samples with a weight
+
+        const AxisSamples& time(bool is_still) const { return is_still ? still_t : t; }
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {

@@ -40,7 +40,7 @@ void FastRenderer::clear(const Rows& rows, const Span& span) const noexcept {
 /// shows at its end, which is the same for all frames of the next.
 void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
                                std::size_t worker) noexcept {
-    const AxisSamples& t = span.is_still ? job.still_t : job.t;
+    const AxisSamples& t = job.time(span.is_still);
     const Rows blended = rows(worker, RowsOf::frame);
     std::size_t sample = 0;
     if (t.index < 0) {
@@ -66,7 +66,7 @@ void FastRenderer::begin_with_end(const Job& job, const Span& span, std::size_t 
         clear(end, span);
         add_sample(job, span, sample, 1, end, worker);
     }
-    const auto weight = float((span.is_still ? job.still_t : job.t).weight[sample]);
+    const auto weight = float(job.time(span.is_still).weight[sample]);
     const int first = layout().columns.begin[std::size_t(span.first)],
               last = layout().columns.begin[std::size_t(span.last)];
     const auto weigh = [&](const float* from, float* to) {
@@ -82,7 +82,7 @@ void FastRenderer::add_sample(const Job& job, const Span& span, std::size_t samp
     const AxisSamples y =
         sample_axis(job.geometry.y + span.row, job.geometry.height, job.geometry.sensor_height,
                     config_.latent_stride, config_.blend);
-    const double dt = (span.is_still ? job.still_t : job.t).offset[sample];
+    const double dt = job.time(span.is_still).offset[sample];
     const Rows outputs = rows(worker, RowsOf::member);
     float* base = scratch_[worker].data();
     for (std::size_t b = 0; b < 2; ++b) {
