@@ -76,6 +76,7 @@ OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
         open_growing(options.overwrite);
     } else {
         replaces_ = exists;
+        had_earlier_ = exists && facts.st_size > 0;
         open_beside(options.overwrite);
     }
 }
@@ -259,7 +260,18 @@ void OutputFile::rename_part() {
     if (::rename(part_.c_str(), path_.c_str()) != 0) fail("renamed", errno);
 }
 
+/// On the disk, before the file from before goes: or a power cut soon after leaves neither of them.
+void OutputFile::bring_to_disk() {
+    if (part_.empty() || !had_earlier_ || file_ < 0) return;
+    while (::fdatasync(file_) != 0)
+        if (errno != EINTR) {
+            if (errno == EINVAL || errno == ENOSYS) return;  // file systems that know no such thing
+            fail("written", errno);
+        }
+}
+
 void OutputFile::close() {
+    bring_to_disk();
     // Before the renaming: some file systems say only now that there was no space.
     if (owned_ && file_ >= 0 && ::close(std::exchange(file_, -1)) != 0) fail("written", errno);
     publish();

@@ -14,7 +14,7 @@ namespace eventide {
 /// When a file shows under its name.
 enum class Appears {
     /// At publish(): until then it is written beside, as NAME.part, and then renamed, so that there
-    /// is a whole file or, when that fails, the one from before.
+    /// is a whole file or, when that fails, the one from before; by close() also after a power cut.
     whole,
     /// From its first byte, for what others read while it grows or a killed run must leave behind:
     /// videos, streams, recordings of cameras. What was there is kept until that first byte.
@@ -77,6 +77,7 @@ private:
     void take_alone();
     void open_beside(bool overwrite);
     void begin();
+    void bring_to_disk();
     void rename_part();
     void forget_new_file();
     [[noreturn]] void fail(const char* doing, int error) const;
@@ -89,6 +90,7 @@ private:
     bool owned_ = true;  // standard output is not ours to close
     bool seekable_ = false, reader_gone_ = false;
     bool replaces_ = false;         // a file was there, and may go
+    bool had_earlier_ = false;      // it held something
     bool has_other_names_ = false;  // what was there: hard links
     bool made_ = false;             // by us, under its own name
     bool begun_ = false;            // it got a byte

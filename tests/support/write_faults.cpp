@@ -1,6 +1,6 @@
-// Preloaded into a program: the n-th write into a file and all after it find the disk full, or the
-// n-th write is where the program is killed.
-//   EVENTIDE_FAULT         full or kill; else writes are only counted
+// Preloaded into a program: the n-th write into a file and all after it find the disk full, the
+// n-th write is where the program is killed, or the disk cannot take what was written.
+//   EVENTIDE_FAULT         full, kill or lost; else writes are only counted
 //   EVENTIDE_FAULT_AT      n, from 0
 //   EVENTIDE_FAULT_COUNT   a file that holds the number of writes so far
 #include <fcntl.h>
@@ -77,5 +77,11 @@ ssize_t pwrite(int file, const void* bytes, size_t n, off_t offset) {
 }
 ssize_t pwrite64(int file, const void* bytes, size_t n, off_t offset) {
     return positioned(file, bytes, n, offset);
+}
+int fdatasync(int file) {
+    static const bool is_lost = says("EVENTIDE_FAULT", "lost");
+    if (!is_lost) return int(syscall(SYS_fdatasync, file));
+    errno = EIO;
+    return -1;
 }
 }

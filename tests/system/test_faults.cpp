@@ -91,6 +91,32 @@ TEST_F(Faults, ADiskThatIsFullAtAnyWriteEndsTheRunWithItsFilesName) {
     }
 }
 
+TEST_F(Faults, AnEarlierFileStaysWhereTheNewOneDoesNotReachTheDisk) {
+    for (const char* name : {"state", "copy.txt"}) {
+        write_text(temp_ / name, "old");
+        const std::vector<std::string> arguments =
+            name == std::string{"state"}
+                ? std::vector<std::string>{"run",  recording(),   "--model", model(),      "--out",
+                                           "null", "--state-out", name,      "--overwrite"}
+                : std::vector<std::string>{"convert", recording(), name, "--overwrite"};
+        std::vector<std::string> command{EVENTIDE_PROGRAM};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        const auto with = [&](const char* fault) {
+            return run(command, {.environment = {{"LD_PRELOAD", EVENTIDE_WRITE_FAULTS},
+                                                 {"EVENTIDE_FAULT", fault}},
+                                 .folder = temp_.path().string()});
+        };
+        const Result lost = with("lost");
+        EXPECT_EQ(lost.exit_code, 1) << lost.error;
+        EXPECT_NE(lost.error.find(name + std::string{": cannot be written: Input/output error"}),
+                  std::string::npos)
+            << lost.error;
+        EXPECT_EQ(read_text(temp_ / name), "old");
+        EXPECT_EQ(with("none").exit_code, 0);
+        EXPECT_NE(read_text(temp_ / name), "old");
+    }
+}
+
 bool ends_with(const fs::path& file, const std::string& end) {
     return read_text(file).ends_with(end);
 }
