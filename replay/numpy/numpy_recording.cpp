@@ -2,17 +2,18 @@
 #include "replay/numpy/numpy_recording.h"
 
 #include "replay/numpy/numpy_table.h"
-#include "replay/numpy/zip_directory.h"
 #include "replay/table_reader.h"
 #include "src/codec/text/text_layout.h"
 #include "src/core/error.h"
 #include "src/core/list_text.h"
 #include "src/core/lower_case.h"
+#include "src/io/zip_directory.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <utility>
 
 namespace eventide {
@@ -203,9 +204,15 @@ struct NamedArray {
     NumpyArray array;
 };
 
+ZipArchive archive_in(const ByteFile& file) {
+    return {file.path(), file.size(), [&file](std::uint64_t offset, std::span<std::byte> into) {
+                return file.read_at(offset, into);
+            }};
+}
+
 std::vector<NamedArray> arrays_of(const ByteFile& file) {
     std::vector<NamedArray> arrays;
-    for (const ZipEntry& entry : read_zip_directory(file)) {
+    for (const ZipEntry& entry : read_zip_directory(archive_in(file))) {
         if (!entry.name.ends_with(".npy")) continue;
         NamedArray named{entry.name.substr(0, entry.name.size() - 4), nullptr, {}};
         if (entry.method == 0)
@@ -228,7 +235,7 @@ std::vector<NamedArray> arrays_of(const ByteFile& file) {
 /// The first text recording, by its name, of an archive without arrays; empty where there is none.
 std::string only_text(const ByteFile& file) {
     std::string first;
-    for (const ZipEntry& entry : read_zip_directory(file)) {
+    for (const ZipEntry& entry : read_zip_directory(archive_in(file))) {
         if (entry.name.ends_with(".npy")) return {};
         const bool is_text = entry.name.ends_with(".txt") || entry.name.ends_with(".csv");
         // The name is part of a command that people copy.

@@ -1,4 +1,4 @@
-// Zip (PKWARE APPNOTE 6.3, sections 4.3.7, 4.3.12, 4.3.16) around .npy files.
+// Zip archives of .npy files, unpacked array by array.
 #include "src/io/npz.h"
 
 #include "src/core/error.h"
@@ -7,111 +7,66 @@
 
 #include <zlib.h>
 
-#include <bit>
-#include <cstring>
+#include <algorithm>
 #include <span>
-#include <string_view>
+#include <utility>
 
 namespace eventide {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "zip and '<f4' are read in place");
-
-constexpr std::uint32_t kEndOfDirectory = 0x06054b50, kDirectoryEntry = 0x02014b50,
-                        kLocalEntry = 0x04034b50;
-constexpr std::size_t kEndBytes = 22, kDirectoryBytes = 46, kLocalBytes = 30;
 constexpr std::uint64_t kLargestArrayBytes = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxInflation = 1032;  // of deflate: 258 bytes from 2 bits
 
-template <typename T>
-T number_at(std::span<const std::byte> bytes, std::size_t offset) {
-    T value;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
-    return value;
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+/// Whether the packed bytes are those of `out`, all of it, as deflate packs them.
+bool inflates(std::span<const std::byte> packed, std::span<std::byte> out) {
+    z_stream z{};
+    z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
+    z.avail_in = uInt(packed.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = uInt(out.size());
+    if (inflateInit2(&z, -MAX_WBITS) != Z_OK) return false;
+    const int status = inflate(&z, Z_FINISH);
+    inflateEnd(&z);
+    return status == Z_STREAM_END && z.total_out == out.size();
 }
 
 }  // namespace
 
 NpzFile::NpzFile(const std::filesystem::path& path)
     : file_(path.string()), bytes_(read_bytes_of_file(path)) {
-    read_directory();
+    const auto read_at = [this](std::uint64_t offset, std::span<std::byte> into) {
+        const auto rest = std::span{bytes_}.subspan(std::size_t(offset));
+        const std::size_t count = std::min(rest.size(), into.size());
+        std::copy_n(rest.begin(), count, into.begin());
+        return count;
+    };
+    for (ZipEntry& entry : read_zip_directory({file_, bytes_.size(), read_at})) {
+        std::string name = entry.name;
+        if (name.ends_with(".npy")) name.resize(name.size() - 4);
+        entries_.insert_or_assign(std::move(name), std::move(entry));
+    }
 }
 
 void NpzFile::refuse(const std::string& what) const {
     throw Error(ErrorKind::input, file_ + ": " + what + " (expected an npz file)");
 }
 
-void NpzFile::read_directory() {
-    const std::span<const std::byte> bytes{bytes_};
-    // The end record is last, but for a comment of at most 65,535 bytes.
-    std::size_t end = bytes.size() < kEndBytes ? 0 : bytes.size() - kEndBytes + 1;
-    const std::size_t lowest = end > 65536 ? end - 65536 : 0;
-    while (end > lowest && number_at<std::uint32_t>(bytes, end - 1) != kEndOfDirectory) --end;
-    if (end == lowest) refuse("no zip directory found");
-    --end;
-    const auto count = number_at<std::uint16_t>(bytes, end + 10);
-    std::size_t at = number_at<std::uint32_t>(bytes, end + 16);
-    for (int i = 0; i < count; ++i) {
-        if (at > end || end - at < kDirectoryBytes ||
-            number_at<std::uint32_t>(bytes, at) != kDirectoryEntry)
-            refuse("the zip directory is damaged at entry " + std::to_string(i));
-        Entry entry;
-        entry.method = number_at<std::uint16_t>(bytes, at + 10);
-        entry.crc = number_at<std::uint32_t>(bytes, at + 16);
-        entry.packed_bytes = number_at<std::uint32_t>(bytes, at + 20);
-        entry.unpacked_bytes = number_at<std::uint32_t>(bytes, at + 24);
-        entry.header_offset = number_at<std::uint32_t>(bytes, at + 42);
-        const std::size_t name_bytes = number_at<std::uint16_t>(bytes, at + 28);
-        const std::size_t rest = name_bytes + number_at<std::uint16_t>(bytes, at + 30) +
-                                 number_at<std::uint16_t>(bytes, at + 32);
-        at += kDirectoryBytes;
-        if (rest > end - at) refuse("the zip directory is cut short");
-        std::string name{text_of(bytes.subspan(at, name_bytes))};
-        if (name.ends_with(".npy")) name.resize(name.size() - 4);
-        entries_.insert_or_assign(std::move(name), entry);
-        at += rest;
-    }
-}
-
 std::vector<std::byte> NpzFile::unpacked(const std::string& name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end()) refuse("array '" + name + "' is missing");
-    const Entry& entry = found->second;
-    const std::span<const std::byte> bytes{bytes_};
-    const auto header = std::size_t(entry.header_offset);
-    if (header > bytes.size() || bytes.size() - header < kLocalBytes ||
-        number_at<std::uint32_t>(bytes, header) != kLocalEntry)
-        refuse("array '" + name + "' has no zip entry where the directory says");
-    const std::size_t data = header + kLocalBytes + number_at<std::uint16_t>(bytes, header + 26) +
-                             number_at<std::uint16_t>(bytes, header + 28);
-    if (data > bytes.size() || entry.packed_bytes > bytes.size() - data ||
-        entry.unpacked_bytes > kLargestArrayBytes)
-        refuse("array '" + name + "' is cut short");
-    const auto packed = bytes.subspan(data, std::size_t(entry.packed_bytes));
-
+    const ZipEntry& entry = found->second;
+    const auto packed =
+        std::span{bytes_}.subspan(std::size_t(entry.begin), std::size_t(entry.packed_size));
     // Before memory is taken for what the directory says.
-    if (entry.unpacked_bytes > packed.size() * kMaxInflation)
-        refuse("array '" + name + "' is said to be of " + std::to_string(entry.unpacked_bytes) +
+    if (entry.size > kLargestArrayBytes || entry.size > packed.size() * kMaxInflation)
+        refuse("array '" + name + "' is said to be of " + std::to_string(entry.size) +
                " bytes, which " + std::to_string(packed.size()) + " packed ones cannot give");
-    std::vector<std::byte> out(std::size_t(entry.unpacked_bytes));
+    std::vector<std::byte> out(std::size_t(entry.size));
     if (entry.method == 0) {
         if (packed.size() != out.size()) refuse("array '" + name + "' has two sizes");
         std::copy(packed.begin(), packed.end(), out.begin());
     } else if (entry.method == 8) {
-        z_stream z{};
-        z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
-        z.avail_in = uInt(packed.size());
-        z.next_out = reinterpret_cast<Bytef*>(out.data());
-        z.avail_out = uInt(out.size());
-        if (inflateInit2(&z, -MAX_WBITS) != Z_OK) refuse("zlib does not start");
-        const int status = inflate(&z, Z_FINISH);
-        inflateEnd(&z);
-        if (status != Z_STREAM_END || z.total_out != out.size())
-            refuse("array '" + name + "' does not unpack");
+        if (!inflates(packed, out)) refuse("array '" + name + "' does not unpack");
     } else {
         refuse("array '" + name + "' is packed by method " + std::to_string(entry.method) +
                ", only 0 (stored) and 8 (deflated) are read");

@@ -1,6 +1,8 @@
 // Arrays of numbers as NumPy's savez writes them: a zip archive of .npy files.
 #pragma once
 
+#include "src/io/zip_directory.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -34,18 +36,12 @@ public:
     const std::string& file() const { return file_; }
 
 private:
-    struct Entry {
-        std::uint64_t header_offset = 0, packed_bytes = 0, unpacked_bytes = 0;
-        std::uint32_t crc = 0;
-        std::uint16_t method = 0;
-    };
-    void read_directory();
     std::vector<std::byte> unpacked(const std::string& name) const;
     [[noreturn]] void refuse(const std::string& what) const;
 
     std::string file_;
     std::vector<std::byte> bytes_;
-    std::map<std::string, Entry> entries_;
+    std::map<std::string, ZipEntry> entries_;  // without ".npy"
 };
 
 }  // namespace eventide
