@@ -2,9 +2,9 @@
 #include "apps/evaluate/evreal_sequence.h"
 
 #include "apps/evaluate/seconds.h"
+#include "replay/numpy/numpy_file.h"
 #include "src/core/error.h"
 #include "src/core/partition_row.h"
-#include "src/io/npy.h"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ bool is_sequence(const fs::path& path) {
 }
 
 /// Of an array of times.
-SensorTime time_of(double seconds, const NpyFile& file, std::uint64_t row) {
+SensorTime time_of(double seconds, const NumpyFile& file, std::uint64_t row) {
     if (const auto t = time_from_seconds(seconds)) return *t;
     throw Error(ErrorKind::input, file.name() + ": row " + std::to_string(row) +
                                       ": expected a time in seconds, found " +
@@ -37,14 +37,14 @@ SensorTime time_of(double seconds, const NpyFile& file, std::uint64_t row) {
 }
 
 /// The first row of ascending times in seconds that is not before `t`.
-std::uint64_t lower_bound_row(NpyFile& file, SensorTime t) {
+std::uint64_t lower_bound_row(NumpyFile& file, SensorTime t) {
     return partition_row(file.rows(), [&](std::uint64_t row) {
         return time_of(file.read(row, 1)[0], file, row) < t;
     });
 }
 
 /// Events are found by bisection and cut by their times: only in order does that mean anything.
-void check_order(const NpyFile& file, std::uint64_t row, SensorTime before, SensorTime t) {
+void check_order(const NumpyFile& file, std::uint64_t row, SensorTime before, SensorTime t) {
     if (t >= before) return;
     throw Error(ErrorKind::input, file.name() + ": row " + std::to_string(row) +
                                       ": expected a time not before the row above, found " +
@@ -58,7 +58,8 @@ struct Span {
 };
 
 void read_events(const fs::path& folder, const Span& span, ReferenceSequence& into) {
-    NpyFile ts{folder / "events_ts.npy"}, xy{folder / "events_xy.npy"}, p{folder / "events_p.npy"};
+    NumpyFile ts{folder / "events_ts.npy"}, xy{folder / "events_xy.npy"},
+        p{folder / "events_p.npy"};
     const bool fit = xy.rows() == ts.rows() && p.rows() == ts.rows();
     if (!fit ||
         (ts.rows() > 0 && (xy.row_length() != 2 || ts.row_length() != 1 || p.row_length() != 1)))
@@ -87,16 +88,16 @@ void read_events(const fs::path& folder, const Span& span, ReferenceSequence& in
 }
 
 void read_images(const fs::path& folder, const Span& span, ReferenceSequence& into) {
-    NpyFile images{folder / "images.npy"}, ts{folder / "images_ts.npy"};
-    const std::vector<std::int64_t>& shape = images.header().shape;
+    NumpyFile images{folder / "images.npy"}, ts{folder / "images_ts.npy"};
+    const std::vector<std::uint64_t>& shape = images.array().shape;
     const bool grey = shape.size() == 3 || (shape.size() == 4 && shape[3] == 1);
-    if (!grey || images.header().kind != 'u' || images.header().item_bytes != 1 ||
+    if (!grey || images.number().kind != 'u' || images.number().bytes != 1 ||
         ts.rows() != images.rows() || (ts.rows() > 0 && ts.row_length() != 1))
         throw Error(ErrorKind::input,
                     folder.string() +
                         ": expected images.npy [image][y][x] of 8 bit and as many "
                         "times in images_ts.npy");
-    check_sensor_size(images.name(), shape[2], shape[1]);
+    check_sensor_size(images.name(), std::int64_t(shape[2]), std::int64_t(shape[1]));
     into.height = int(shape[1]);
     into.width = int(shape[2]);
     const auto times = ts.read(0, ts.rows());

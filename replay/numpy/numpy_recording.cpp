@@ -1,6 +1,7 @@
 // Which array is what, and its rows as events.
 #include "replay/numpy/numpy_recording.h"
 
+#include "replay/numpy/file_bytes.h"
 #include "replay/numpy/numpy_table.h"
 #include "replay/table_reader.h"
 #include "src/codec/text/text_layout.h"

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "replay/event_table.h"
-#include "replay/numpy/byte_source.h"
-#include "replay/numpy/numpy_array.h"
 #include "src/codec/text/text_layout.h"
+#include "src/io/byte_source.h"
+#include "src/io/numpy_array.h"
 
 #include <cstdint>
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/io/input_file.h"
-#include "src/io/npy.h"
+#include "src/io/numpy_array.h"
 
 #include <zlib.h>
 
@@ -77,20 +77,20 @@ std::vector<std::byte> NpzFile::unpacked(const std::string& name) const {
 }
 
 NpzArray NpzFile::array(const std::string& name) const {
-    const std::vector<std::byte> file = unpacked(name);
-    const NpyHeader header = parse_npy_header(file, file_ + ": array '" + name + "'");
-    if (header.kind != 'f')
-        refuse("array '" + name + "' is of kind '" + header.kind +
-               "', expected numbers of kind 'f'");
-    const std::size_t bytes = file.size() - header.data_offset;
-    const auto item = std::size_t(header.item_bytes);
-    if (header.count > kLargestArrayBytes || std::size_t(header.count) * item != bytes)
-        refuse("array '" + name + "' holds " + std::to_string(bytes) + " bytes, its shape needs " +
-               std::to_string(header.count * item));
-    NpzArray array{header.shape, std::vector<float>(std::size_t(header.count))};
-    for (std::size_t i = 0; i < array.values.size(); ++i)
-        array.values[i] = float(npy_number(header, file.data() + header.data_offset, i));
-    return array;
+    const std::vector<std::byte> bytes = unpacked(name);
+    MemoryBytes source{bytes};
+    const NumpyArray array = read_numpy_header(source, file_ + ": array '" + name + "'");
+    if (!array.is_of_numbers_in_rows() || array.fields.front().kind != 'f')
+        refuse("array '" + name + "' is not of numbers of kind 'f' in C order");
+    const NumpyField& number = array.fields.front();
+    if (const auto held = bytes.size() - array.data_offset; held != array.items() * number.bytes)
+        refuse("array '" + name + "' holds " + std::to_string(held) + " bytes, its shape needs " +
+               std::to_string(array.items() * number.bytes));
+    NpzArray out{{array.shape.begin(), array.shape.end()}, {}};
+    out.values.reserve(std::size_t(array.items()));
+    for (std::size_t at = std::size_t(array.data_offset); at < bytes.size(); at += number.bytes)
+        out.values.push_back(float(numpy_number(number, bytes.data() + at)));
+    return out;
 }
 
 }  // namespace eventide

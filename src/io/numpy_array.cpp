@@ -1,5 +1,5 @@
 // "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }", or descr as a list of fields.
-#include "replay/numpy/numpy_array.h"
+#include "src/io/numpy_array.h"
 
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
@@ -141,6 +141,16 @@ bool NumpyField::is_number() const {
     if (kind == 'f') return bytes == 4 || bytes == 8;
     return (kind == 'i' || kind == 'u' || kind == 'b') &&
            (bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8);
+}
+
+bool NumpyArray::is_of_numbers_in_rows() const {
+    return !is_of_records() && fields.front().is_number() && (!columns_first || shape.size() < 2);
+}
+
+std::uint64_t NumpyArray::items() const {
+    std::uint64_t items = 1;
+    for (const std::uint64_t side : shape) items *= side;
+    return items;
 }
 
 std::string NumpyArray::shape_text() const {

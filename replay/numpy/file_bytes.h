@@ -2,27 +2,17 @@
 #pragma once
 
 #include "replay/stream/byte_file.h"
+#include "src/io/byte_source.h"
 
 #include <zlib.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace eventide {
-
-class ByteSource {
-public:
-    virtual ~ByteSource() = default;
-    virtual std::uint64_t size() const = 0;
-    /// False where they cannot be read, or there are not so many.
-    virtual bool read_at(std::uint64_t offset, std::span<std::byte> into) = 0;
-    /// Going back means to begin anew.
-    virtual bool is_sequential() const = 0;
-};
 
 /// `file` is borrowed.
 class StoredBytes final : public ByteSource {

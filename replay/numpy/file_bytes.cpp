@@ -1,5 +1,5 @@
 // Stored bytes by position, deflated ones by inflating up to it.
-#include "replay/numpy/byte_source.h"
+#include "replay/numpy/file_bytes.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // The header of a NumPy array: of numbers, or of records.
 #pragma once
 
-#include "replay/numpy/byte_source.h"
+#include "src/io/byte_source.h"
 
 #include <cstdint>
 #include <string>
@@ -26,7 +26,10 @@ struct NumpyArray {
     bool is_cut = false;  ///< the shape is of the whole rows that there are, and was larger
 
     bool is_of_records() const { return !fields.empty() && !fields.front().name.empty(); }
+    /// Of numbers that are read, row-major: the last index is contiguous.
+    bool is_of_numbers_in_rows() const;
     std::uint64_t rows() const { return shape.empty() ? 1 : shape.front(); }
+    std::uint64_t items() const;  ///< numbers, or records: the product of `shape`
     std::string shape_text() const;
     /// Of the name; null where there is none.
     const NumpyField* field(const std::string& name) const;
