@@ -9,7 +9,7 @@ build=(
   libopencv-dev libeigen3-dev nlohmann-json3-dev libtbb-dev libhwy-dev libdnnl-dev
   libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev
-  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
+  libavcodec-dev libavformat-dev libavutil-dev
   libusb-1.0-0-dev libhdf5-dev libsqlite3-dev libcpp-httplib-dev
   cyclonedds-dev cyclonedds-tools libyaml-dev
   python3-dev python3-numpy pybind11-dev

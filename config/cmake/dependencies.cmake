@@ -22,7 +22,7 @@ eventide_feature(EVENTIDE_COMPRESSION "recordings compressed by LZ4, ZSTD and bz
 
 # The programs.
 pkg_check_modules(spdlog IMPORTED_TARGET spdlog)
-pkg_check_modules(libav IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+pkg_check_modules(libav libavformat libavcodec libavutil)
 find_package(CLI11 QUIET)
 set(program ON)
 if(NOT EVENTIDE_IO_ENABLED AND NOT EVENTIDE_PROGRAM STREQUAL "ON")
@@ -49,6 +49,13 @@ function(eventide_soname into name folders)
   endif()
   set(${into} ${CMAKE_MATCH_1} PARENT_SCOPE)
 endfunction()
+
+if(EVENTIDE_VIDEO_ENABLED)
+  foreach(part AVCODEC AVFORMAT AVUTIL)
+    string(TOLOWER ${part} name)
+    eventide_soname(EVENTIDE_${part} ${name} "${libav_LIBRARY_DIRS}")
+  endforeach()
+endif()
 
 # What can be left out of either.
 pkg_check_modules(libusb IMPORTED_TARGET libusb-1.0)

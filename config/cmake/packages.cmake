@@ -38,8 +38,15 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME eventide)
 foreach(part IMGCODECS HIGHGUI)
   string(REGEX REPLACE "^libopencv_(.*)\\.so\\.(.*)$" "libopencv-\\1\\2" opencv_${part} "${EVENTIDE_OPENCV_${part}}")
 endforeach()
+# With the first video: "libavcodec.so.59" is of libavcodec59.
+if(EVENTIDE_VIDEO_ENABLED)
+  foreach(part AVCODEC AVFORMAT AVUTIL)
+    string(REPLACE ".so." "" package "${EVENTIDE_${part}}")
+    string(APPEND video ", ${package}")
+  endforeach()
+endif()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${core} (= ${PROJECT_VERSION}), ${opencv_IMGCODECS}")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${core} (= ${PROJECT_VERSION}), ${library} (= ${PROJECT_VERSION}), ${opencv_IMGCODECS}, ${opencv_HIGHGUI}")  # their models and cameras
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${core} (= ${PROJECT_VERSION}), ${library} (= ${PROJECT_VERSION}), ${opencv_IMGCODECS}, ${opencv_HIGHGUI}${video}")  # their models and cameras
 # Loaded when a ROS 2 topic is named or an HDF5 file is opened, so that dpkg-shlibdeps does not see them.
 if(EVENTIDE_ROS2_ENABLED)
   list(APPEND loaded libddsc0debian)

@@ -267,19 +267,22 @@ TEST_F(Run, RendersOneRegionOnly) {
     EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "30,16\n");
 }
 
-/// They bring a hundred others: 46 MB, and the time to load them.
-TEST_F(Run, LoadsOpencvsFilesAndWindowsOnlyWhereTheyAreAskedFor) {
+/// They bring a hundred others each: 46 and 20 MB, and the time to load them.
+TEST_F(Run, LoadsLibrariesForImageFilesWindowsAndVideosOnlyWhereTheyAreAskedFor) {
     const auto loads = [&](const std::string& out) {
         return eventide({"run", recording(), "--to", "60ms", "--out", out},
                         {.environment = {{"LD_DEBUG", "files"}}})
             .error;
     };
-    const std::string none = loads("null"), folder = loads("a/");
+    const std::string none = loads("null"), folder = loads("a/"), video = loads("v.mp4");
     EXPECT_THAT(none, HasSubstr("libopencv_core"));
     EXPECT_THAT(none, Not(HasSubstr("libopencv_imgcodecs")));
     EXPECT_THAT(none, Not(HasSubstr("libopencv_highgui")));
     EXPECT_THAT(folder, HasSubstr("libopencv_imgcodecs"));
+    EXPECT_THAT(none, Not(HasSubstr("libav")));
     EXPECT_THAT(folder, Not(HasSubstr("libopencv_highgui")));
+    EXPECT_THAT(video, HasSubstr("libavformat"));
+    EXPECT_THAT(video, Not(HasSubstr("libopencv_imgcodecs")));
 }
 
 TEST_F(Run, TakesASimulationInPlaceOfACamera) {

@@ -67,9 +67,14 @@ Finding network() {
 }
 
 Finding video() {
-    if (encodes_h264()) return {"video", State::good, "libx264", ""};
-    return {"video", State::bad, video_library() + " has no libx264",
-            "install Debian's libavcodec, or write frames (--out frames/) or Y4M (--out -)"};
+    constexpr const char* kAdvice =
+        "install Debian's libavcodec, or write frames (--out frames/) or Y4M (--out -)";
+    try {
+        if (encodes_h264()) return {"video", State::good, "libx264", ""};
+        return {"video", State::bad, video_library() + " has no libx264", kAdvice};
+    } catch (const Error& error) {
+        return {"video", State::bad, error.what(), kAdvice};
+    }
 }
 
 Finding window() {

@@ -29,10 +29,10 @@ struct VideoSettings {
     ShownPart part = {};  ///< that frames show
 };
 
-/// "FFmpeg 5.1.6", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.
+/// "libavcodec 59.37.100", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.
 std::string video_library();
 
-/// Whether that has an encoder for H.264.
+/// Whether that has an encoder for H.264. Throws Error (failed) where it is not installed.
 bool encodes_h264();
 
 /// Time stamps are the frames' sensor times minus the first one's, times `slow`, in microseconds

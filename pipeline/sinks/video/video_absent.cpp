@@ -12,7 +12,7 @@ VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
     throw Error(ErrorKind::usage,
                 settings_.path.string() +
                     ": this eventide was built without videos; write frames (--out frames/) or Y4M "
-                    "(--out -), or install libavformat-dev, libavcodec-dev and libswscale-dev and "
+                    "(--out -), or install libavformat-dev and libavcodec-dev and "
                     "build it again with -DEVENTIDE_VIDEO=ON");
 }
 

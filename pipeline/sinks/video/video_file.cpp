@@ -1,16 +1,10 @@
 // One stream of video in one file, through libav.
 #include "pipeline/sinks/video/video_file.h"
 
+#include "pipeline/sinks/video/libav.h"
 #include "pipeline/sinks/video/video.h"
 #include "pipeline/sinks/video/yuv.h"
 #include "src/core/error.h"
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/opt.h>
-#include <libavutil/pixdesc.h>
-}
 
 #include <algorithm>
 #include <array>
@@ -37,7 +31,7 @@ constexpr int kBufferBytes = 32768;  // as libav's own files have
 
 std::string words_of(int error) {
     char text[AV_ERROR_MAX_STRING_SIZE]{};
-    av_strerror(error, text, sizeof text);
+    libav().av_strerror(error, text, sizeof text);
     return text;
 }
 
@@ -79,28 +73,28 @@ void refuse_wrong(const EncoderSettings& settings, const VideoKind& kind,
 }  // namespace
 
 std::string video_library() {
-    return std::string{"FFmpeg "} + av_version_info();
+    return "libavcodec " AV_STRINGIFY(LIBAVCODEC_VERSION);
 }
 
 bool encodes_h264() {
-    return avcodec_find_encoder_by_name("libx264") != nullptr;
+    return libav().avcodec_find_encoder_by_name("libx264") != nullptr;
 }
 
 void VideoFile::Free::operator()(AVCodecContext* p) const {
-    avcodec_free_context(&p);
+    libav().avcodec_free_context(&p);
 }
 void VideoFile::Free::operator()(AVFormatContext* p) const {
-    avformat_free_context(p);
+    libav().avformat_free_context(p);
 }
 void VideoFile::Free::operator()(AVIOContext* p) const {
-    av_freep(&p->buffer);
-    avio_context_free(&p);
+    libav().av_freep(&p->buffer);
+    libav().avio_context_free(&p);
 }
 void VideoFile::Free::operator()(AVFrame* p) const {
-    av_frame_free(&p);
+    libav().av_frame_free(&p);
 }
 void VideoFile::Free::operator()(AVPacket* p) const {
-    av_packet_free(&p);
+    libav().av_packet_free(&p);
 }
 
 /// libav hands our own errors on as numbers only; they come out here, with their words.
@@ -113,37 +107,37 @@ void VideoFile::check(int result, const char* doing) {
 
 VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
     : path_{std::move(path)}, kind_{video_kind_of(path_)}, settings_{std::move(settings)} {
-    const AVCodec* codec = avcodec_find_encoder_by_name(kind_.encoder);
-    const AVOutputFormat* format = av_guess_format(nullptr, path_.c_str(), nullptr);
+    const AVCodec* codec = libav().avcodec_find_encoder_by_name(kind_.encoder);
+    const AVOutputFormat* format = libav().av_guess_format(nullptr, path_.c_str(), nullptr);
     if (codec == nullptr || format == nullptr)
         throw Error(ErrorKind::failed, path_.string() + ": expected libav to have " +
                                            kind_.encoder + " and " + kind_.extension +
                                            ", found one without");
     refuse_wrong(settings_, kind_, path_);
     AVFormatContext* container = nullptr;
-    check(avformat_alloc_output_context2(&container, format, nullptr, path_.c_str()),
+    check(libav().avformat_alloc_output_context2(&container, format, nullptr, path_.c_str()),
           "preparing it");
     container_.reset(container);
-    encoder_.reset(avcodec_alloc_context3(codec));
-    frame_.reset(av_frame_alloc());
-    packet_.reset(av_packet_alloc());
+    encoder_.reset(libav().avcodec_alloc_context3(codec));
+    frame_.reset(libav().av_frame_alloc());
+    packet_.reset(libav().av_packet_alloc());
     // What goes wrong comes back as a result; x264's own talk is not for the terminal.
     encoder_->log_level_offset = AV_LOG_MAX_OFFSET;
     if (is_h264(kind_))
-        check(av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
+        check(libav().av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
               "choosing x264's preset");
     file_ = std::make_unique<OutputFile>(
         path_, OutputOptions{.overwrite = settings_.overwrite, .appears = Appears::growing});
-    const auto buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
-    bytes_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr,
+    const auto buffer = static_cast<unsigned char*>(libav().av_malloc(kBufferBytes));
+    bytes_.reset(libav().avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr,
 #if LIBAVFORMAT_VERSION_MAJOR >= 61
-                                    put,
+                                            put,
 #else
                                     [](void* self, std::uint8_t* bytes, int size) {
                                         return put(self, bytes, size);
                                     },
 #endif
-                                    file_->is_seekable() ? seek : nullptr));
+                                            file_->is_seekable() ? seek : nullptr));
     container_->pb = bytes_.get();
     container_->flags |= AVFMT_FLAG_CUSTOM_IO;
 }
@@ -153,7 +147,7 @@ VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
 VideoFile::~VideoFile() {
     if (!trailer_due_) return;
     is_given_up_ = true;
-    av_write_trailer(container_.get());
+    libav().av_write_trailer(container_.get());
 }
 
 int VideoFile::put(void* self, const std::uint8_t* bytes, int size) {
@@ -189,7 +183,7 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     type_ = image.type();
     width_ = image.cols;
     height_ = image.rows;
-    encoder_->pix_fmt = av_get_pix_fmt(kind_.pixels);
+    encoder_->pix_fmt = libav().av_get_pix_fmt(kind_.pixels);
     const bool grey = encoder_->pix_fmt == AV_PIX_FMT_GRAY8;
     encoder_->width = grey ? width_ : even(width_);
     encoder_->height = grey ? height_ : even(height_);
@@ -197,7 +191,7 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     encoder_->colorspace = kind_.as_jpeg ? AVCOL_SPC_BT470BG : AVCOL_SPC_BT709;
     encoder_->color_primaries = AVCOL_PRI_BT709;
     encoder_->color_trc = AVCOL_TRC_BT709;
-    encoder_->framerate = av_d2q(settings_.fps, 1'000'000);
+    encoder_->framerate = libav().av_d2q(settings_.fps, 1'000'000);
     encoder_->time_base = kind_.ticks_per_second > 0 ? AVRational{1, kind_.ticks_per_second}
                                                      : av_inv_q(encoder_->framerate);
     encoder_->gop_size = kKeyInterval;
@@ -206,36 +200,37 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     if (container_->oformat->flags & AVFMT_GLOBALHEADER)
         encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     if (is_h264(kind_)) {
-        av_opt_set_double(encoder_->priv_data, "crf", settings_.crf, 0);
+        libav().av_opt_set_double(encoder_->priv_data, "crf", settings_.crf, 0);
         // A long look ahead would keep that many frames out of the file.
-        av_opt_set_int(encoder_->priv_data, "rc-lookahead", 10, 0);
+        libav().av_opt_set_int(encoder_->priv_data, "rc-lookahead", 10, 0);
     }
     encoder_->flags |= AV_CODEC_FLAG_QSCALE;  // Motion JPEG; the others pass it over
     encoder_->global_quality = kJpegQuality * FF_QP2LAMBDA;
-    if (avcodec_open2(encoder_.get(), encoder_->codec, nullptr) < 0)
+    if (libav().avcodec_open2(encoder_.get(), encoder_->codec, nullptr) < 0)
         throw Error(ErrorKind::failed, path_.string() + ": " + kind_.encoder +
                                            " refuses frames of " + std::to_string(width_) + "x" +
                                            std::to_string(height_));
 
-    stream_ = avformat_new_stream(container_.get(), nullptr);
+    stream_ = libav().avformat_new_stream(container_.get(), nullptr);
     stream_->time_base = encoder_->time_base;
     stream_->avg_frame_rate = encoder_->framerate;
-    check(avcodec_parameters_from_context(stream_->codecpar, encoder_.get()), "describing it");
+    check(libav().avcodec_parameters_from_context(stream_->codecpar, encoder_.get()),
+          "describing it");
     AVDictionary* options = nullptr;
     if (is_mp4(*container_)) {
-        av_dict_set(&options, "movflags", "frag_keyframe+empty_moov+default_base_moof", 0);
-        av_dict_set_int(&options, "video_track_timescale", kMicroseconds.den, 0);
+        libav().av_dict_set(&options, "movflags", "frag_keyframe+empty_moov+default_base_moof", 0);
+        libav().av_dict_set_int(&options, "video_track_timescale", kMicroseconds.den, 0);
     }
     container_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
-    const int result = avformat_write_header(container_.get(), &options);
-    av_dict_free(&options);
+    const int result = libav().avformat_write_header(container_.get(), &options);
+    libav().av_dict_free(&options);
     check(result, "writing its header");
     header_written_ = trailer_due_ = true;
 
     frame_->format = encoder_->pix_fmt;
     frame_->width = encoder_->width;
     frame_->height = encoder_->height;
-    check(av_frame_get_buffer(frame_.get(), 0), "making a buffer");
+    check(libav().av_frame_get_buffer(frame_.get(), 0), "making a buffer");
 }
 
 void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
@@ -246,7 +241,7 @@ void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
                                            ", found one of " + std::to_string(image.cols) + "x" +
                                            std::to_string(image.rows));
     // The encoder may still read the buffer of the frame before.
-    check(av_frame_make_writable(frame_.get()), "making a buffer");
+    check(libav().av_frame_make_writable(frame_.get()), "making a buffer");
     fill_frame(image);
     frame_->pts = tick_of(t_us);
     encode(frame_.get());
@@ -254,7 +249,8 @@ void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
 
 /// A pause that is too long for the file takes with it what is too much of it.
 std::int64_t VideoFile::tick_of(std::int64_t t_us) {
-    const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base) - cut_ticks_;
+    const std::int64_t tick =
+        libav().av_rescale_q(t_us, kMicroseconds, encoder_->time_base) - cut_ticks_;
     if (!last_tick_) return *(last_tick_ = tick);
     const std::int64_t after = std::max<std::int64_t>(tick - *last_tick_, kind_.least_ticks);
     const std::int64_t held = std::min(after, kind_.most_ticks);
@@ -273,17 +269,17 @@ void VideoFile::fill_frame(const cv::Mat& image) {
 }
 
 void VideoFile::encode(const AVFrame* frame) {
-    check(avcodec_send_frame(encoder_.get(), frame), "encoding");
+    check(libav().avcodec_send_frame(encoder_.get(), frame), "encoding");
     for (;;) {
-        const int result = avcodec_receive_packet(encoder_.get(), packet_.get());
+        const int result = libav().avcodec_receive_packet(encoder_.get(), packet_.get());
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "encoding");
         packet_->stream_index = stream_->index;
-        packet_->duration =
-            av_rescale_q(std::llround(1e6 / settings_.fps), kMicroseconds, encoder_->time_base);
-        av_packet_rescale_ts(packet_.get(), encoder_->time_base, stream_->time_base);
-        check(av_write_frame(container_.get(), packet_.get()), "writing");
-        av_packet_unref(packet_.get());
+        packet_->duration = libav().av_rescale_q(std::llround(1e6 / settings_.fps), kMicroseconds,
+                                                 encoder_->time_base);
+        libav().av_packet_rescale_ts(packet_.get(), encoder_->time_base, stream_->time_base);
+        check(libav().av_write_frame(container_.get(), packet_.get()), "writing");
+        libav().av_packet_unref(packet_.get());
     }
 }
 
@@ -292,8 +288,8 @@ void VideoFile::finish() {
     if (header_written_ && !failure_) {
         encode(nullptr);
         trailer_due_ = false;
-        check(av_write_trailer(container_.get()), "ending it");
-        avio_flush(bytes_.get());
+        check(libav().av_write_trailer(container_.get()), "ending it");
+        libav().avio_flush(bytes_.get());
         check(0, "closing it");
     }
     file_->close();
