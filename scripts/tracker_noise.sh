@@ -3,10 +3,13 @@
 # random events per pixel and second are added, the same each time.
 #   EVENTIDE=eventide scripts/tracker_noise.sh TRACKER ['SCENE SEED'...]
 set -euo pipefail
-export LC_ALL=C # decimal points
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 1 99 "$@"
 eventide=${EVENTIDE:-eventide}
-tracker=${1:?"tracker_noise.sh: expected the program made of examples/tracker.cpp"}
+tracker=$1
 shift
+expect_program tracker_noise "$eventide" "EVENTIDE names another"
+expect_program tracker_noise "$tracker" "made of examples/tracker.cpp"
 scenes=("$@")
 [ $# -gt 0 ] || scenes=("thesis_test 11" "thesis_test 12" "thesis_train 11" "thesis_train 12" "wide 13" "demo 13")
 size=240x180 seconds=3
