@@ -3,6 +3,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 
 namespace eventide::test {
@@ -70,13 +73,13 @@ TEST_F(Documentation, TheReaderOfStampedFramesReadsThem) {
     EXPECT_EQ(times, column(temp_ / "frames/timestamps.csv", 2));
 }
 
-/// The lines of code blocks that call the program.
+/// The lines of code blocks that call the program, without those of ```text, which need a camera.
 std::vector<std::string> program_lines(const std::string& page) {
     std::vector<std::string> found;
     bool inside = false;
     std::istringstream lines{page};
     for (std::string line; std::getline(lines, line);) {
-        if (line.starts_with("```")) inside = !inside;
+        if (line.starts_with("```")) inside = !inside && line == "```";
         if (inside && line.starts_with("eventide ")) found.push_back(line);
     }
     return found;
@@ -91,6 +94,51 @@ TEST_F(Documentation, EveryCommandOfTheReadmeRuns) {
         const Result result = run_in_shell(line);
         EXPECT_EQ(result.exit_code, 0) << line << "\n" << result.error;
     }
+}
+
+const std::vector<std::string> kCommands{"run",      "info",     "convert", "devices", "doctor",
+                                         "simulate", "evaluate", "bench",   "stress"};
+
+std::set<std::string> options_in(const std::string& text) {
+    const std::regex option{R"((?:^|[\s`(,])(--[a-z][a-z0-9-]*))"};
+    std::set<std::string> found;
+    for (std::sregex_iterator at{text.begin(), text.end(), option}, end; at != end; ++at)
+        found.insert((*at)[1]);
+    return found;
+}
+
+TEST_F(Documentation, TheUsagePageNamesEveryOption) {
+    const auto named = options_in(read_text(EVENTIDE_SOURCE_DIR "/docs/usage.md"));
+    for (const std::string& command : kCommands) {
+        const Result help = eventide({command, "--help"});
+        const auto options = options_in(help.output);
+        EXPECT_FALSE(options.empty()) << command;
+        for (const std::string& option : options)
+            EXPECT_TRUE(option == "--help" || named.contains(option)) << command << " " << option;
+    }
+}
+
+TEST_F(Documentation, CommandsAreShownWithOptionsThatTheyHave) {
+    std::map<std::string, std::set<std::string>> has;
+    for (const std::string& command : kCommands)
+        has[command] = options_in(eventide({command, "--help"}).output);
+    const auto of_all = options_in(eventide({"--help"}).output);
+    const std::regex call{R"((?:^|[\s`(])eventide (\w+)([^`|\n#]*))"};
+    std::vector<std::filesystem::path> pages{EVENTIDE_SOURCE_DIR "/README.md"};
+    for (const auto& page : std::filesystem::directory_iterator{EVENTIDE_SOURCE_DIR "/docs"})
+        if (page.path().extension() == ".md") pages.push_back(page.path());
+    int calls = 0;
+    for (const auto& page : pages) {
+        const std::string text = read_text(page);
+        for (std::sregex_iterator at{text.begin(), text.end(), call}, end; at != end; ++at) {
+            if (!has.contains((*at)[1])) continue;  // eventide help, eventide and OpenCV
+            ++calls;
+            for (const std::string& option : options_in((*at)[2]))
+                EXPECT_TRUE(has[(*at)[1]].contains(option) || of_all.contains(option))
+                    << page << ": " << (*at)[0] << ": " << option;
+        }
+    }
+    EXPECT_GT(calls, 100);
 }
 
 }  // namespace
