@@ -24,7 +24,7 @@ noise() {
   }'
 }
 
-printf '%-16s %9s  %s\n' 'scene, seed' 'Hz/pixel' 'median, rms in px of: all alike | steps | 1/sigma^2 | RANSAC'
+printf '%-16s %9s  %s\n' 'scene, seed' 'Hz/pixel' 'median, rms in px of: equal weights | steps | 1/sigma^2 | RANSAC'
 for scene in "${scenes[@]}"; do
   read -r name seed <<< "$scene"
   "$eventide" simulate --scene "$name" --seed "$seed" --seconds $seconds --size $size --images-per-second 0 --out "$work/clean.aedat4" \
@@ -37,6 +37,6 @@ for scene in "${scenes[@]}"; do
     printf '%-16s %9s  ' "$name $seed" $hz
     # Of each way to weigh: median and rms.
     "$tracker" "$work/noisy.aedat4" "$work/truth/" 2> /dev/null |
-      awk '/^(all alike|steps|1\/sigma\^2|RANSAC)/ { printf "%s%s, %s", (n++ ? " | " : ""), $(NF - 2), $NF } END { print "" }'
+      awk '/^(equal weights|steps|1\/sigma\^2|RANSAC)/ { printf "%s%s, %s", (n++ ? " | " : ""), $(NF - 2), $NF } END { print "" }'
   done
 done

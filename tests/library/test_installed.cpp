@@ -195,6 +195,9 @@ TEST_F(Installed, ErrorIsPlottedAgainstSigma) {
             {.environment = {{"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR},
                              {"EVENTIDE_MODELS", ""}}});
     };
+    const Result wrong = plotted("soon");
+    EXPECT_EQ(wrong.exit_code, 1);
+    EXPECT_EQ(wrong.error, "error_against_sigma.py [PLOT.svg [SECONDS]]\n");
     const Result none = plotted("0.001");
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_NE(none.error.find(": expected SECONDS long enough for a frame, found 0.001\n"),
