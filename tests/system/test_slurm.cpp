@@ -115,6 +115,21 @@ TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {
     EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000001"));
 }
 
+TEST_F(Slurm, StatesOfARecordingWithoutImagesNeedNoFurtherOption) {
+    ASSERT_EQ(eventide({"simulate", "--scene", "demo", "--seconds", "2.2", "--size", "32x24",
+                        "--images-per-second", "0", "--out", "long.aedat4"})
+                  .exit_code,
+              0);
+    const Result planned =
+        script("submit.sh", plan({"--states", "--segment", "1", "out", "long.aedat4"}));
+    ASSERT_EQ(planned.exit_code, 0) << planned.error;
+    const Result states = script("states.sh", {"out", "0"});
+    ASSERT_EQ(states.exit_code, 0) << states.error;
+    const Result last = script("task.sh", {"out", "2"});
+    EXPECT_EQ(last.exit_code, 0) << last.error;
+    EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000000"));
+}
+
 /// As Ctrl-C would: the run ends properly, and the part is not whole all the same.
 TEST_F(Slurm, ATaskThatWasStoppedIsNotDone) {
     simulate("long.aedat4");
