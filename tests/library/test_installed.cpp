@@ -284,9 +284,10 @@ TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
     EXPECT_GE(models, 3U);
     for (const char* const file :
          {"share/eventide/cameras/davis346.toml", "share/eventide/default.toml",
-          "share/doc/eventide/LICENSE", "lib/udev/rules.d/65-eventide.rules",
-          "lib/systemd/system/eventide@.service", "bin/eventide", "share/man/man1/eventide.1",
-          "share/bash-completion/completions/eventide", "share/zsh/vendor-completions/_eventide",
+          "share/doc/eventide/LICENSE", "share/doc/eventide/docs/usage.md",
+          "lib/udev/rules.d/65-eventide.rules", "lib/systemd/system/eventide@.service",
+          "bin/eventide", "share/man/man1/eventide.1", "share/bash-completion/completions/eventide",
+          "share/zsh/vendor-completions/_eventide",
           "share/fish/vendor_completions.d/eventide.fish"})
         EXPECT_TRUE(fs::exists(prefix() + "/" + file)) << file;
 }
