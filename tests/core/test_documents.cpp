@@ -97,6 +97,15 @@ TEST(Documents, AnchorsLeadToHeadings) {
     EXPECT_GT(count, 20U) << "else the pattern finds nothing";
 }
 
+TEST(Documents, TheReadmeLeadsToEveryPage) {
+    const std::string readme = text_of(kRoot / "README.md");
+    for (const auto& entry : fs::directory_iterator{kRoot / "docs"})
+        if (entry.path().extension() == ".md") {
+            const std::string page = "(docs/" + entry.path().filename().string();
+            EXPECT_NE(readme.find(page), readme.npos) << page;
+        }
+}
+
 TEST(Documents, PathsOfTheSourceTreeAreThere) {
     // Not behind another path: build/release/apps/cli is what a build makes.
     const std::regex path{
