@@ -52,6 +52,19 @@ TEST_F(Scripts, SayHowTheyAreCalled) {
     }
 }
 
+TEST_F(Scripts, ThatInPythonSaysHowItIsCalled) {
+    const std::string name = "check-trainer-alone.py";
+    const auto called = [&](const char* argument) {
+        return run({"python3", "project/scripts/" + name, argument}, {.folder = temp_.path()});
+    };
+    const Result help = called("--help");
+    EXPECT_EQ(help.exit_code, 0) << help.error;
+    EXPECT_THAT(help.output, HasSubstr("scripts/" + name));
+    const Result wrong = called("quick");
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.error, HasSubstr("scripts/" + name));
+}
+
 /// Before they install, build or write anything.
 TEST_F(Scripts, RefuseWhatTheyCannotUse) {
     struct Refusal {
