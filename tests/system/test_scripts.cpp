@@ -78,6 +78,7 @@ TEST_F(Scripts, RefuseWhatTheyCannotUse) {
         {"conditions.sh", {"nowhere"}, "expected nowhere/images/bsds500, found none"},
         {"experiments.sh", {"nowhere"}, "expected nowhere/recordings, found none"},
         {"train.sh", {".", "soon"}, "MINUTES: expected a whole number above 0, found 'soon'"},
+        {"train.sh", {".", "0"}, "MINUTES: expected a whole number above 0, found '0'"},
         {"train.sh", {"nowhere", "5"}, "expected nowhere/perceptual/lpips_squeeze_v0.1.npz"},
         {"moving_picture.sh",
          {"a.raw", "b.webp"},

@@ -180,6 +180,11 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
     EXPECT_THAT(script("submit.sh", plan({"--states", "--segment", "1", "out", "a.aedat4"})).error,
                 HasSubstr("expected --frames ignore among the options of run"));
     EXPECT_FALSE(fs::exists(temp_ / "out")) << "a plan that cannot be changed any more";
+    EXPECT_EQ(script("submit.sh", plan({"--states", "--segment", "1", "ignoring", "a.aedat4"}),
+                     {{"EVENTIDE_RUN_FRAMES", "ignore"}})
+                  .exit_code,
+              0)
+        << "what the environment says holds for eventide run, too";
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1s", "out", "a.aedat4"})).error,
                 HasSubstr("--segment: expected whole seconds, found '1s'"));
     EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,

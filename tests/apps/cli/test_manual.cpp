@@ -60,6 +60,8 @@ TEST(Manual, SaysWhatIsAroundTheProgram) {
         EXPECT_TRUE(has(page, std::string{"\n.SH "} + section + "\n")) << section;
     for (const char* heading : {"Output", "Quality", "Input"})
         EXPECT_TRUE(has(page, std::string{"\n\\fB"} + heading + "\\fR\n")) << heading;
+    const std::string heading = "\n\\fBQuality\\fR\n";
+    EXPECT_EQ(page.find(heading), page.rfind(heading)) << "once, over all options under it";
     EXPECT_TRUE(has(page, "130 and 143"));
 }
 
