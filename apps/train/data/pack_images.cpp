@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
         refuse_existing(words[0], false);
         const auto images = photos(words);
         write_texture_pack(words[0], images);
-        std::cout << images.size() << " images\n";
+        std::cout << counted(images.size(), "image") << "\n";
     } catch (const Error& error) {
         std::cerr << "eventide-pack-images: " << error.what() << "\n";
         return int(error.kind());

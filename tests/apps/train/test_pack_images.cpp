@@ -28,7 +28,7 @@ protected:
 TEST_F(PackImages, WritesThoseFromTheFirstOn) {
     const Result result = pack("400", "1");
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_EQ(result.output, "1 images\n");
+    EXPECT_EQ(result.output, "1 image\n");
     EXPECT_TRUE(std::filesystem::exists(temp_ / "out.pack"));
 }
 
