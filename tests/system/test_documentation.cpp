@@ -1,6 +1,8 @@
 // Every command in the documentation does what it says: the shell blocks of docs/usage.md are run.
 #include "tests/system/program_test.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -139,6 +141,39 @@ TEST_F(Documentation, CommandsAreShownWithOptionsThatTheyHave) {
         }
     }
     EXPECT_GT(calls, 100);
+}
+
+TEST_F(Documentation, TheModelPageNamesEveryKeyOfAModelFile) {
+    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/docs/model.md");
+    const std::size_t begin = page.find("\n## Model file\n");
+    ASSERT_NE(begin, page.npos);
+    const std::string section = page.substr(begin, page.find("\n## ", begin + 1) - begin);
+    const auto card = nlohmann::json::parse(eventide({"info", "small", "--json"}).output);
+    EXPECT_GT(card.size(), 20U);
+    for (const auto& [key, value] : card.items())
+        if (key != "identity" && key != "weights")  // of the file as a whole
+            EXPECT_TRUE(std::regex_search(section, std::regex{"\\|[^|\n]*\\b" + key + "\\b"}))
+                << key;
+}
+
+TEST_F(Documentation, TheFormatsPageNamesEveryFormatAndKindOfDamage) {
+    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/docs/formats.md");
+    const auto info = nlohmann::json::parse(eventide({"info", recording(), "--json"}).output);
+    EXPECT_GT(info["damaged"].size(), 5U);
+    for (const auto& [reason, count] : info["damaged"].items())
+        EXPECT_NE(page.find("\n| `" + reason + "` |"), page.npos) << reason;
+    // "expected auto, aedat4, ..., found 'none'"
+    const std::string refusal = eventide({"info", recording(), "--input-format", "none"}).error;
+    const std::size_t begin = refusal.find("expected ") + 9;
+    std::string names = refusal.substr(begin, refusal.find(", found") - begin);
+    const std::regex name{R"(\w+)"};
+    int formats = 0;
+    for (std::sregex_iterator at{names.begin(), names.end(), name}, end; at != end; ++at) {
+        if (at->str() == "auto" || at->str() == "or") continue;
+        ++formats;
+        EXPECT_NE(page.find("`" + at->str() + "`"), page.npos) << at->str();
+    }
+    EXPECT_GT(formats, 10) << refusal;
 }
 
 }  // namespace
