@@ -67,10 +67,10 @@ TEST_F(DocumentedNames, TheModelPageNamesEveryKeyOfAModelFile) {
     const std::string section = page.substr(begin, page.find("\n## ", begin + 1) - begin);
     const auto card = nlohmann::json::parse(eventide({"info", "small", "--json"}).output);
     EXPECT_GT(card.size(), 20U);
-    for (const auto& [key, value] : card.items())
-        if (key != "identity" && key != "weights")  // of the file as a whole
-            EXPECT_TRUE(std::regex_search(section, std::regex{"\\|[^|\n]*\\b" + key + "\\b"}))
-                << key;
+    for (const auto& [key, value] : card.items()) {
+        if (key == "identity" || key == "weights") continue;  // of the file as a whole
+        EXPECT_TRUE(std::regex_search(section, std::regex{"\\|[^|\n]*\\b" + key + "\\b"})) << key;
+    }
 }
 
 TEST_F(DocumentedNames, TheFormatsPageNamesEveryFormatAndKindOfDamage) {
