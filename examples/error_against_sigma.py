@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # %% [markdown]
 # # Is sigma true?
-# error_against_sigma.py [PLOT.svg [SECONDS]]: an event camera is simulated, its frames are
-# compared with what an ideal camera would have shown, and the error of their pixels is plotted
-# against the sigma that came with them. Cells as editors with notebooks know them.
+# An event camera is simulated, its frames are compared with what an ideal camera would have
+# shown, and the error of their pixels is plotted against the sigma that came with them. Cells as
+# editors with notebooks know them; also a program: error_against_sigma.py [PLOT.svg [SECONDS]]
 
 # %%
 import sys
@@ -11,10 +11,17 @@ import sys
 import eventide
 import numpy as np
 
-plot, seconds = (sys.argv[1:] + ["error_against_sigma.svg", "2"][len(sys.argv) - 1 :])[:2]
+plot, seconds = "error_against_sigma.svg", 2.0
+if "ipykernel" not in sys.modules:  # a notebook has arguments of its own
+    try:
+        plot, seconds = sys.argv[1:] + [plot, seconds][len(sys.argv) - 1 :]
+        seconds = float(seconds)
+        assert not plot.startswith("-")
+    except (AssertionError, ValueError):
+        sys.exit("error_against_sigma.py [PLOT.svg [SECONDS]]")
 
 # %% Frames beside the truth of the same instants
-simulation = eventide.simulate("demo", size=(96, 72), seconds=float(seconds), truths_per_second=50)
+simulation = eventide.simulate("demo", size=(96, 72), seconds=seconds, truths_per_second=50)
 network = eventide.Reconstructor("default", simulation.width, simulation.height)
 errors, sigmas, waiting = [], [], []
 for events, truths in simulation:

@@ -14,8 +14,9 @@ int main(int argc, char** argv) try {
     std::ifstream events(argv[1]);
     int width = 0, height = 0, x = 0, y = 0, p = 0;
     if (!(events >> width >> height))
-        throw eventide::Error(eventide::ErrorKind::input,
-                              std::string(argv[1]) + ": expected a line \"width height\"");
+        throw eventide::Error(
+            eventide::ErrorKind::input,
+            std::string(argv[1]) + ": expected a line \"width height\", found none");
     eventide::Reconstructor reconstructor("default", width, height,
                                           {.window = "auto",
                                            .lookahead = 2,

@@ -38,7 +38,7 @@ constexpr double kSure = .13, kDoubtful = .2, kDoubtfulWeight = .25, kLeastSigma
 
 const std::vector<Weighing>& weighings() {
     static const std::vector<Weighing> all{
-        {"all alike", [](double) { return 1.0; }},
+        {"equal weights", [](double) { return 1.0; }},
         {"steps", [](double s) { return s < kSure       ? 1.0
                                         : s < kDoubtful ? kDoubtfulWeight
                                                         : 0.0; }},

@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Builds the library of events to frames for 64-bit ARM, runs it in emulation, and compares its frames with this machine's. Needs
 # g++-aarch64-linux-gnu and qemu-user-static; Debian's libraries for ARM come into build/arm, the system's packages stay as they are.
+#   scripts/check-arm.sh
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 0 0 "$@"
 cd "$(dirname "$0")/.."
 for program in aarch64-linux-gnu-g++ qemu-aarch64-static; do
   command -v "$program" >/dev/null || { echo "check-arm: expected $program (packages g++-aarch64-linux-gnu, qemu-user-static), found none" >&2; exit 1; }

@@ -2,6 +2,9 @@
 # Fails where a source file is not laid out as .clang-format says, and names the places.
 #   scripts/check-format.sh [--fix]
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 0 1 "$@"
+case "${1:-}" in "" | --fix) ;; *) refuse "format: expected --fix or nothing, found '$1'" ;; esac
 cd "$(dirname "$0")/.."
 # Debian 12's: other versions lay out a few things differently.
 formatter=clang-format-14

@@ -9,6 +9,10 @@ import subprocess
 import sys
 import tempfile
 
+if sys.argv[1:]:
+    asked = sys.argv[1:] in (["-h"], ["--help"])
+    print(f"scripts/check-trainer-alone.py\n{__doc__}", file=sys.stdout if asked else sys.stderr)
+    sys.exit(0 if asked else 2)
 os.chdir(pathlib.Path(__file__).resolve().parent.parent)
 DEV, ALONE = pathlib.Path("build/dev"), pathlib.Path("build/alone")
 # Folders below /usr/include: the compiler's and the C library's, then what the build asks for.

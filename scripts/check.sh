@@ -4,6 +4,14 @@
 # emulation. An hour or two on two cores; before a release, and after changes to parsers, threads or memory.
 #   scripts/check.sh [api] [wheel] [core] [bare] [packages] [arm] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+wanted=("${@:-all}")
+for check in "${wanted[@]}"; do
+  case $check in
+    all | api | wheel | core | bare | packages | arm | tidy | asan | tsan | fuzz) ;;
+    *) refuse "check: expected api, wheel, core, bare, packages, arm, tidy, asan, tsan or fuzz, found '$check'" ;;
+  esac
+done
 cd "$(dirname "$0")/.."
 fuzz_seconds=2  # of each target: a minute of all together
 
@@ -110,7 +118,7 @@ packages() (
 )
 
 scripts/install-packages.sh --tests
-for check in "${@:-all}"; do
+for check in "${wanted[@]}"; do
   case $check in
     all) scripts/check-format.sh; api; wheel; core; bare; packages; scripts/check-arm.sh; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
     api) api ;;
@@ -122,7 +130,6 @@ for check in "${@:-all}"; do
     tidy) tidy ;;
     fuzz) scripts/fuzz.sh $fuzz_seconds ;;
     asan | tsan) scripts/test.sh "$check" ;;
-    *) echo "check: expected api, wheel, core, bare, packages, arm, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
   esac
 done
 echo "check: passed"

@@ -7,14 +7,17 @@
 # build/release/apps/cli/eventide. SEEDS: how many scenes for each condition (4). Recordings are kept in out/conditions, and used
 # again where the same program would simulate the same.
 set -euo pipefail
-export LC_ALL=C # decimal points
-[ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 1 2 "$@"
+expect_files conditions "$1"/{images/bsds500,perceptual/lpips_squeeze_v0.1.npz}
 DATA=$(realpath "$1")
 model=${2:-default}
 [ ! -f "$model" ] || model=$(realpath "$model")
 cd "$(dirname "$0")/.."
 program=${EVENTIDE:-build/release/apps/cli/eventide}
+expect_program conditions "$program" "preset release builds it; EVENTIDE names another"
 seeds=${SEEDS:-4}
+expect_number conditions SEEDS "$seeds"
 kept=out/conditions
 rm -rf "$kept/photographs" # those of another DATA
 mkdir -p "$kept/photographs"

@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to video from events: installs what is missing, builds, simulates a recording, reconstructs it.
-#   scripts/demo.sh [folder]         the result goes to out/demo unless told otherwise
+#   scripts/demo.sh [FOLDER]         the result goes to out/demo unless told otherwise
 # Makes frames as PNG, sigma as TIFF, an MP4, and one contact sheet: events, intensity, sigma and truth side by side.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 0 1 "$@"
+[[ ${1:-} != -* ]] || refuse "demo: expected a folder, found '$1'"
 out=${1:+$(realpath -m "$1")}
 cd "$(dirname "$0")/.."
 out=${out:-out/demo}

@@ -6,15 +6,19 @@
 # run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
 # EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
-export LC_ALL=C # decimal points
-[ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-[ "$1" = --tables ] || DATA=$(realpath "$1")
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 1 99 "$@"
+if [ "$1" != --tables ]; then
+  expect_files experiments "$1"/{recordings,images/bsds500,images/objects,images/elementary,perceptual/lpips_squeeze_v0.1.npz}
+  DATA=$(realpath "$1")
+fi
 cd "$(dirname "$0")/.."
 build=build/release/apps
 train=${TRAIN:-$build/train/eventide-train}
 pack=${PACK:-$build/train/eventide-pack-images}
 program=${EVENTIDE:-$build/cli/eventide}
 minutes=${MINUTES:-5}
+expect_number experiments MINUTES "$minutes"
 out=${OUT:-out/experiments}
 results=research/experiments.csv
 page=research/experiments.md
@@ -165,8 +169,11 @@ if [ "$1" != --tables ]; then
   shift
   [ $# -gt 0 ] || set -- "${order[@]}"
   for name in "$@"; do
-    [ -n "${experiments[$name]:-}" ] || { echo "experiments: expected one of ${order[*]}, found '$name'" >&2; exit 2; }
+    [ -n "${experiments[$name]:-}" ] || refuse "experiments: expected one of ${order[*]}, found '$name'"
   done
+  expect_program experiments "$train" "preset release builds it; TRAIN names another"
+  expect_program experiments "$pack" "preset release builds it; PACK names another"
+  expect_program experiments "$program" "preset release builds it; EVENTIDE names another"
   [ -e "$out/train.pack" ] || "$pack" "$out/train.pack" 400 "$DATA/images/objects" 0 0 "$DATA/images/elementary" 0 0
   [ -e "$out/held_out.pack" ] || "$pack" "$out/held_out.pack" 400 "$DATA/images/bsds500" 400 100
   for name in "$@"; do

@@ -1,11 +1,15 @@
 #!/usr/bin/env bash
 # Faults, run for real and many times over: what the tests do at a few moments, at as many as asked for. Minutes to
 # an hour; `scripts/faults.sh 50` kills a run at 50 of its writes and fills the disk at 50.
-#   scripts/faults.sh [moments, 50]      needs the preset dev built, with tests
+#   scripts/faults.sh [MOMENTS]      50 unless told otherwise; needs the preset dev built, with tests
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 0 1 "$@"
 cd "$(dirname "$0")/.."
 export EVENTIDE_FAULT_MOMENTS=${1:-50}
+expect_number faults MOMENTS "$EVENTIDE_FAULT_MOMENTS"
 build=build/dev
+expect_program faults "$build/tests/system/test_hard_cases" "preset dev builds it"
 
 # A whole run: the disk full at a write, killed (SIGKILL) at a write.
 "$build/tests/system/test_hard_cases" --gtest_filter='Faults.*'

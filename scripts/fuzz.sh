@@ -5,11 +5,12 @@
 #   scripts/fuzz.sh SECONDS [TARGET...]      scripts/fuzz.sh 60 aedat4 config
 # RUNS=10000000: a target is finished when it has run so often in all, and left out where it already has.
 set -euo pipefail
-export LC_ALL=C # decimal points
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 1 99 "$@"
 cd "$(dirname "$0")/.."
-seconds=${1:?"fuzz: expected SECONDS [TARGET...]"}
-[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: expected a whole number of seconds, found $seconds" >&2; exit 2; }
-[[ ${RUNS:-1} =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: RUNS: expected a whole number of runs, found $RUNS" >&2; exit 2; }
+seconds=$1
+expect_number fuzz SECONDS "$seconds"
+expect_number fuzz RUNS "${RUNS:-1}"
 shift
 
 cmake --preset fuzz >/dev/null

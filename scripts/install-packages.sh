@@ -3,6 +3,9 @@
 #   scripts/install-packages.sh            to build and run
 #   scripts/install-packages.sh --tests    also what the tests, benchmarks and training need
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 0 1 "$@"
+case "${1:-}" in "" | --tests) ;; *) refuse "packages: expected --tests or nothing, found '$1'" ;; esac
 
 build=(
   g++ cmake ninja-build ccache pkg-config

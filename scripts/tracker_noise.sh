@@ -3,10 +3,13 @@
 # random events per pixel and second are added, the same each time.
 #   EVENTIDE=eventide scripts/tracker_noise.sh TRACKER ['SCENE SEED'...]
 set -euo pipefail
-export LC_ALL=C # decimal points
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 1 99 "$@"
 eventide=${EVENTIDE:-eventide}
-tracker=${1:?"tracker_noise.sh: expected the program made of examples/tracker.cpp"}
+tracker=$1
 shift
+expect_program tracker_noise "$eventide" "EVENTIDE names another"
+expect_program tracker_noise "$tracker" "made of examples/tracker.cpp"
 scenes=("$@")
 [ $# -gt 0 ] || scenes=("thesis_test 11" "thesis_test 12" "thesis_train 11" "thesis_train 12" "wide 13" "demo 13")
 size=240x180 seconds=3
@@ -21,7 +24,7 @@ noise() {
   }'
 }
 
-printf '%-16s %9s  %s\n' 'scene, seed' 'Hz/pixel' 'median, rms in px of: all alike | steps | 1/sigma^2 | RANSAC'
+printf '%-16s %9s  %s\n' 'scene, seed' 'Hz/pixel' 'median, rms in px of: equal weights | steps | 1/sigma^2 | RANSAC'
 for scene in "${scenes[@]}"; do
   read -r name seed <<< "$scene"
   "$eventide" simulate --scene "$name" --seed "$seed" --seconds $seconds --size $size --images-per-second 0 --out "$work/clean.aedat4" \
@@ -34,6 +37,6 @@ for scene in "${scenes[@]}"; do
     printf '%-16s %9s  ' "$name $seed" $hz
     # Of each way to weigh: median and rms.
     "$tracker" "$work/noisy.aedat4" "$work/truth/" 2> /dev/null |
-      awk '/^(all alike|steps|1\/sigma\^2|RANSAC)/ { printf "%s%s, %s", (n++ ? " | " : ""), $(NF - 2), $NF } END { print "" }'
+      awk '/^(equal weights|steps|1\/sigma\^2|RANSAC)/ { printf "%s%s, %s", (n++ ? " | " : ""), $(NF - 2), $NF } END { print "" }'
   done
 done

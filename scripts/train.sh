@@ -6,8 +6,10 @@
 # far, for a model to ship: OUT/model.safetensors). Ctrl-C ends it after the step at hand with everything written.
 # TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the photographs, packed (out/train).
 set -euo pipefail
-export LC_ALL=C # decimal points
-[ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+expect_arguments 2 999 "$@"
+expect_number train MINUTES "$2"
+expect_files train "$1/perceptual/lpips_squeeze_v0.1.npz"
 data=$(realpath "$1")
 cd "$(dirname "$0")/.."
 build=build/release/apps/train
@@ -16,6 +18,9 @@ pack=${PACK:-$build/eventide-pack-images}
 out=${OUT:-out/${MODEL:-train}}
 packs=${PACKS:-out/train}
 checkpoint=config/models/checkpoints/${MODEL:-default}.safetensors
+expect_files train "$checkpoint"
+expect_program train "$train" "preset release builds it; TRAIN names another"
+expect_program train "$pack" "preset release builds it; PACK names another"
 mkdir -p "$out" "$packs"
 [ -e "$packs/train.pack" ] || "$pack" "$packs/train.pack" 400 "$data/images/photos" 0 0 "$data/images/objects" 0 0 "$data/images/elementary" 0 0 "$data/images/bsds500" 0 400
 [ -e "$packs/held_out.pack" ] || "$pack" "$packs/held_out.pack" 400 "$data/images/bsds500" 400 100

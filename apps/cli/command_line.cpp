@@ -157,7 +157,9 @@ void describe(CLI::App& app, std::vector<Offered>& commands, Options& common_opt
         footer_of(std::string{"Examples:\n"
                               "  eventide run recording.aedat4 --out video.mp4\n"
                               "  eventide info recording.raw\n"
-                              "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
+                              "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"
+                              "eventide COMMAND --help lists the options of a command.\n"
+                              "Exit codes: "} +
                   kExitCodes));
     common_options.describe(common);
     for (Offered& each : commands) {

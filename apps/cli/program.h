@@ -22,8 +22,9 @@ std::string zsh_completion();
 std::string fish_completion();
 
 inline constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 1 failed while running, 2 wrong usage or configuration, 3 input "
-    "unreadable, 4 device missing or lost, 5 finished but data were lost (with --strict).";
+    "0 done, 1 failed while running, 2 wrong usage or configuration, 3 input unreadable, 4 device "
+    "missing or lost, 5 finished but data were lost (with --strict), 130 and 143 cut short by a "
+    "second SIGINT or SIGTERM.";
 
 /// Everything but main(): parses, resolves the configuration, runs the command, turns errors into
 /// messages and exit codes.

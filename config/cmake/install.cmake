@@ -13,6 +13,8 @@ endif()
 if(EVENTIDE_PROGRAM_ENABLED)
   install(TARGETS eventide COMPONENT program)
   install(FILES config/default.toml DESTINATION ${data} COMPONENT program)
+  install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md")
   install(FILES ${PROJECT_BINARY_DIR}/manual/page DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME eventide.1 COMPONENT program)
   install(FILES ${PROJECT_BINARY_DIR}/manual/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
     RENAME eventide COMPONENT program)

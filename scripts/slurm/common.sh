@@ -1,12 +1,7 @@
 # What the scripts of this folder share; they source it.
 # shellcheck shell=bash
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 EVENTIDE=${EVENTIDE:-eventide}
-export LC_ALL=C # decimal points
-
-refuse() {
-  echo "$1" >&2
-  exit 2
-}
 
 # NUMBER THING: "1 task", "2 tasks".
 counted() {

@@ -33,6 +33,9 @@ for option in "$@"; do
   esac
 done
 
+ignores_images=false
+[[ " $* " != *" --frames ignore "* && " $* " != *" --frames=ignore "* && ${EVENTIDE_RUN_FRAMES:-} != ignore ]] || ignores_images=true
+
 # One line per task: recording, name, from and to (us of the sensor; - for the recording's own), length of the warm-up (us), time of the state that it
 # begins with (us; - for none): a second before its part, for the network's latest maps, which a state does not hold.
 new=$(mktemp)
@@ -51,7 +54,7 @@ for recording in "${recordings[@]}"; do
   fi
   info=$("$EVENTIDE" info "$recording" --json) || refuse "submit.sh: $recording: cannot be read"
   # As run says where the states are made, but before there is a plan.
-  if $states && [[ $(number_in "$info" frames) != 0 && " $* " != *" --frames ignore "* && " $* " != *" --frames=ignore "* && ${EVENTIDE_RUN_FRAMES:-} != ignore ]]; then
+  if $states && ! $ignores_images && [ "$(number_in "$info" frames)" != 0 ]; then
     refuse "submit.sh: --states: $recording has images, which would correct frames; expected --frames ignore among the options of run"
   fi
   # Frames count from just before the first event, as of one run.
@@ -66,6 +69,8 @@ for recording in "${recordings[@]}"; do
     printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$path" "$name" "$begin" $((from + segment * 1000000)) "$before" "$state" >> "$new"
   done
 done
+# Without images frames are the same, but run asks for it.
+! $states || $ignores_images || set -- "$@" --frames ignore
 if [ "$(wc -l < "$new")" -gt 1 ]; then
   for option in "$@"; do
     case $option in --record* | --stats* | --events-out*) refuse "submit.sh: $option: every task would write to the same" ;; esac

@@ -1,11 +1,13 @@
-// What people read first names no file that is not there.
+// What people read first names no file, and no heading, that is not there.
 #include <gtest/gtest.h>
 
 #include <glob.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -55,6 +57,53 @@ TEST(Documents, LinksLeadToFiles) {
     for (const fs::path& document : documents())
         for (const std::string& target : matches_of(text_of(document), link))
             EXPECT_TRUE(is_there(document.parent_path() / target)) << document << ": " << target;
+}
+
+/// As GitHub makes it of a heading: small letters, no punctuation but - and _, - for a blank.
+std::string anchor_of(const std::string& heading) {
+    std::string anchor;
+    for (const char c : heading)
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_')
+            anchor += char(std::tolower(static_cast<unsigned char>(c)));
+        else if (c == ' ')
+            anchor += '-';
+    return anchor;
+}
+
+std::set<std::string> anchors_of(const fs::path& document) {
+    std::set<std::string> found;
+    std::istringstream lines{text_of(document)};
+    bool code = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("```")) code = !code;
+        const std::size_t marks = line.find_first_not_of('#');
+        if (!code && marks > 0 && marks < line.size() && line[marks] == ' ')
+            found.insert(anchor_of(line.substr(marks + 1)));
+    }
+    return found;
+}
+
+TEST(Documents, AnchorsLeadToHeadings) {
+    const std::regex link{R"(\]\(([^):# ]*#[^) ]+)\))"};
+    std::size_t count = 0;
+    for (const fs::path& document : documents())
+        for (const std::string& target : matches_of(text_of(document), link)) {
+            const std::string file = target.substr(0, target.find('#'));
+            const fs::path page = file.empty() ? document : document.parent_path() / file;
+            const std::string anchor = target.substr(target.find('#') + 1);
+            EXPECT_TRUE(anchors_of(page).contains(anchor)) << document << ": " << target;
+            ++count;
+        }
+    EXPECT_GT(count, 20U) << "else the pattern finds nothing";
+}
+
+TEST(Documents, TheReadmeLeadsToEveryPage) {
+    const std::string readme = text_of(kRoot / "README.md");
+    for (const auto& entry : fs::directory_iterator{kRoot / "docs"})
+        if (entry.path().extension() == ".md") {
+            const std::string page = "(docs/" + entry.path().filename().string();
+            EXPECT_NE(readme.find(page), readme.npos) << page;
+        }
 }
 
 TEST(Documents, PathsOfTheSourceTreeAreThere) {

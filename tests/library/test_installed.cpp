@@ -195,6 +195,9 @@ TEST_F(Installed, ErrorIsPlottedAgainstSigma) {
             {.environment = {{"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR},
                              {"EVENTIDE_MODELS", ""}}});
     };
+    const Result wrong = plotted("soon");
+    EXPECT_EQ(wrong.exit_code, 1);
+    EXPECT_EQ(wrong.error, "error_against_sigma.py [PLOT.svg [SECONDS]]\n");
     const Result none = plotted("0.001");
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_NE(none.error.find(": expected SECONDS long enough for a frame, found 0.001\n"),
@@ -281,9 +284,10 @@ TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
     EXPECT_GE(models, 3U);
     for (const char* const file :
          {"share/eventide/cameras/davis346.toml", "share/eventide/default.toml",
-          "share/doc/eventide/LICENSE", "lib/udev/rules.d/65-eventide.rules",
-          "lib/systemd/system/eventide@.service", "bin/eventide", "share/man/man1/eventide.1",
-          "share/bash-completion/completions/eventide", "share/zsh/vendor-completions/_eventide",
+          "share/doc/eventide/LICENSE", "share/doc/eventide/docs/usage.md",
+          "lib/udev/rules.d/65-eventide.rules", "lib/systemd/system/eventide@.service",
+          "bin/eventide", "share/man/man1/eventide.1", "share/bash-completion/completions/eventide",
+          "share/zsh/vendor-completions/_eventide",
           "share/fish/vendor_completions.d/eventide.fish"})
         EXPECT_TRUE(fs::exists(prefix() + "/" + file)) << file;
 }

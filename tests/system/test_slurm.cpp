@@ -115,6 +115,21 @@ TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {
     EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000001"));
 }
 
+TEST_F(Slurm, StatesOfARecordingWithoutImagesNeedNoFurtherOption) {
+    ASSERT_EQ(eventide({"simulate", "--scene", "demo", "--seconds", "2.2", "--size", "32x24",
+                        "--images-per-second", "0", "--out", "long.aedat4"})
+                  .exit_code,
+              0);
+    const Result planned =
+        script("submit.sh", plan({"--states", "--segment", "1", "out", "long.aedat4"}));
+    ASSERT_EQ(planned.exit_code, 0) << planned.error;
+    const Result states = script("states.sh", {"out", "0"});
+    ASSERT_EQ(states.exit_code, 0) << states.error;
+    const Result last = script("task.sh", {"out", "2"});
+    EXPECT_EQ(last.exit_code, 0) << last.error;
+    EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000000"));
+}
+
 /// As Ctrl-C would: the run ends properly, and the part is not whole all the same.
 TEST_F(Slurm, ATaskThatWasStoppedIsNotDone) {
     simulate("long.aedat4");
@@ -165,6 +180,11 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
     EXPECT_THAT(script("submit.sh", plan({"--states", "--segment", "1", "out", "a.aedat4"})).error,
                 HasSubstr("expected --frames ignore among the options of run"));
     EXPECT_FALSE(fs::exists(temp_ / "out")) << "a plan that cannot be changed any more";
+    EXPECT_EQ(script("submit.sh", plan({"--states", "--segment", "1", "ignoring", "a.aedat4"}),
+                     {{"EVENTIDE_RUN_FRAMES", "ignore"}})
+                  .exit_code,
+              0)
+        << "what the environment says holds for eventide run, too";
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1s", "out", "a.aedat4"})).error,
                 HasSubstr("--segment: expected whole seconds, found '1s'"));
     EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,

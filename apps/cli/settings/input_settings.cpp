@@ -42,7 +42,8 @@ void InputSettings::add_to(SettingTable& table) {
             ".",
         [](const std::string& text) {
             if (text == "auto") return std::string{};
-            if (find_format(text) == nullptr) throw_usage("auto or the name of a format", text);
+            if (find_format(text) == nullptr)
+                throw_usage("auto, " + list_of(all_formats(), &Format::name), text);
             return text;
         },
         [](const std::string& text) { return text.empty() ? "auto" : text; }));

@@ -34,6 +34,37 @@ TEST(Manual, HasEveryCommandFlagAndExitCode) {
     EXPECT_TRUE(has(page, "5 finished but data were lost"));
 }
 
+/// Lines that man does not break, so that commands can be copied: sentences among them would leave
+/// the screen.
+TEST(Manual, BreaksSentencesAndNotCommands) {
+    std::istringstream lines{manual_page()};
+    bool as_it_is = false;
+    int commands = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (line == ".nf" || line == ".fi") {
+            EXPECT_NE(as_it_is, line == ".nf") << line << " twice";
+            as_it_is = line == ".nf";
+        } else if (as_it_is) {
+            ++commands;
+            EXPECT_TRUE(line.starts_with("  ")) << line;
+            EXPECT_LE(line.size(), 120U) << line;
+        }
+    }
+    EXPECT_FALSE(as_it_is);
+    EXPECT_GT(commands, 30);
+}
+
+TEST(Manual, SaysWhatIsAroundTheProgram) {
+    const std::string page = manual_page();
+    for (const char* section : {"DESCRIPTION", "EXIT STATUS", "ENVIRONMENT", "FILES"})
+        EXPECT_TRUE(has(page, std::string{"\n.SH "} + section + "\n")) << section;
+    for (const char* heading : {"Output", "Quality", "Input"})
+        EXPECT_TRUE(has(page, std::string{"\n\\fB"} + heading + "\\fR\n")) << heading;
+    const std::string heading = "\n\\fBQuality\\fR\n";
+    EXPECT_EQ(page.find(heading), page.rfind(heading)) << "once, over all options under it";
+    EXPECT_TRUE(has(page, "130 and 143"));
+}
+
 TEST(Manual, IsTextToMan) {
     const std::string page = manual_page();
     std::istringstream lines{page};
