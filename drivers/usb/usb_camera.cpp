@@ -139,6 +139,7 @@ bool UsbCamera::wait_for_begin() {
 ReadStatus UsbCamera::read(RawPacket& into) {
     into.bytes.clear();
     if (!stopped_ && !device_) return wait_for_return();
+    const bool was_streaming = stream_ != nullptr;
     try {
         if (!stopped_ && !stream_) start();
         if (stopped_) {
@@ -151,6 +152,12 @@ ReadStatus UsbCamera::read(RawPacket& into) {
     } catch (const UsbDisconnected&) {
         into.bytes.clear();
         return lost();
+    } catch (const Error& error) {  // it is there, and may work once it was opened again
+        if (!options_.reconnect || !was_streaming) throw;
+        into.bytes.clear();
+        stop_device();
+        warnings_.tell(error);
+        return ReadStatus::timeout;
     }
 }
 
