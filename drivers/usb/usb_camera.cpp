@@ -85,11 +85,23 @@ void UsbCamera::open() {
     if (first) {  // others may read it from then on
         info.serial = identity.serial;
         info_ = std::move(info);
+        expect_return_of(identity);
     }
-    // The same camera must come back, not another; one without a serial number to the same port.
-    selector_.serial = identity.has_serial ? identity.serial : "";
-    selector_.port = identity.has_serial ? "" : identity.port;
+}
+
+/// The same camera must come back, not another; one without a serial number of its own to the same
+/// port.
+void UsbCamera::expect_return_of(const UsbIdentity& identity) {
     selector_.bus = selector_.address = -1;
+    if (!options_.reconnect) return;
+    selector_.serial = identity.has_serial ? identity.serial : "";
+    const auto all = identity.has_serial ? list_usb_devices(selector_) : std::vector{identity};
+    const auto alike = std::ranges::count(all, identity.serial, &UsbIdentity::serial);
+    if (!identity.has_serial || alike > 1) selector_.port = identity.port;
+    if (alike > 1 && options_.warn)
+        options_.warn(std::to_string(alike) + " " + kind_.name +
+                      " say that their serial number is '" + identity.serial +
+                      "': if this one is unplugged, it is taken back at its port alone");
 }
 
 std::size_t UsbCamera::packet_bytes() const {
@@ -288,15 +300,16 @@ bool is_word(const std::string& serial) {
     });
 }
 
-CameraDescription describe(const UsbKind& kind, const UsbIdentity& identity) {
+CameraDescription describe(const UsbKind& kind, const UsbIdentity& identity, bool is_only_one) {
     CameraDescription camera;
     camera.name = kind.name;
     camera.serial = identity.serial;
     camera.bus = identity.bus;
     camera.address = identity.address;
-    camera.source = kind.scheme + (is_word(identity.serial) ? identity.serial
-                                                            : std::to_string(identity.bus) + ":" +
-                                                                  std::to_string(identity.address));
+    camera.source =
+        kind.scheme + (is_only_one && is_word(identity.serial)
+                           ? identity.serial
+                           : std::to_string(identity.bus) + ":" + std::to_string(identity.address));
     camera.firmware = std::to_string(identity.firmware);
     camera.problem = identity.problem;
     return camera;
@@ -310,8 +323,10 @@ std::vector<CameraDescription> list_usb_cameras(
     UsbSelector selector;
     selector.products = kind.products;
     std::vector<CameraDescription> cameras;
-    for (const UsbIdentity& identity : list_usb_devices(selector)) {
-        CameraDescription camera = describe(kind, identity);
+    const auto identities = list_usb_devices(selector);
+    for (const UsbIdentity& identity : identities) {
+        const auto alike = std::ranges::count(identities, identity.serial, &UsbIdentity::serial);
+        CameraDescription camera = describe(kind, identity, alike == 1);
         if (camera.problem.empty()) {
             UsbCameraOptions options;
             options.bus = identity.bus;

@@ -101,6 +101,7 @@ private:
     void look_at_drops();
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();
+    void expect_return_of(const UsbIdentity& identity);
     ReadStatus lost();
     ReadStatus wait_for_return();
 
