@@ -264,6 +264,27 @@ TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written"));
 }
 
+/// v4l2-ctl lists "Vertical Flip" as vertical_flip.
+TEST(V4l2Camera, ControlsMayBeNamedAsV4l2CtlListsThem) {
+    V4l2NodeSettings settings = sensor();
+    settings.controls = {{"Vertical Flip", {0, 1, 0}}, {"Gain (analogue, x2)", {0, 10, 0}}};
+    V4l2Testbed bed{settings};
+    V4l2Settings wanted;
+    wanted.controls = {{"vertical_flip", 1}, {"gain_analogue_x2", 7}};
+    open(wanted);
+    EXPECT_EQ(bed.control("Vertical Flip").value, 1);
+    EXPECT_EQ(bed.control("Gain (analogue, x2)").value, 7);
+    wanted.controls = {{"Vertical Flip", 0}};
+    open(wanted);
+    EXPECT_EQ(bed.control("Vertical Flip").value, 0);
+}
+
+TEST(V4l2Camera, WithControlsItSaysAsWellWhyItCannotBeOpened) {
+    V4l2Settings wanted;
+    wanted.controls = {{"bias_fo", 1}};
+    EXPECT_THAT(failure_of([&] { open(wanted); }), HasSubstr("is the driver loaded"));
+}
+
 TEST(V4l2Camera, ASubdeviceThatIsNotThereIsNamed) {
     V4l2Testbed bed{sensor()};
     V4l2Settings wanted;

@@ -112,7 +112,9 @@ TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     {
         auto camera = open();
         bed.fail_with(EIO);
-        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("--reconnect"));
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                    HasSubstr("/dev/video0 stopped (Input/output error); --reconnect"));
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("stopped")) << "once more";
         bed.fail_with(0);
     }
     auto camera = open({}, true);
@@ -135,7 +137,8 @@ TEST(V4l2Camera, ADriverThatGivesABufferThereIsNotIsLostLikeAnyOther) {
     auto camera = open();
     bed.give({.bytes = bytes_of({time_high(0)}), .says_index = 4});
     RawPacket packet;
-    EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("stopped; --reconnect"));
+    EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                HasSubstr("stopped (it gave a buffer there is not); --reconnect"));
 }
 
 TEST(V4l2Camera, ASensorThatStopsBeforeItGivesDataHasNotComeBack) {
@@ -164,7 +167,7 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
         bed.fail_next("QBUF", ENODEV);
         if (!reconnect) {
             EXPECT_THAT(failure_of([&] { camera.read(packet); }),
-                        HasSubstr("stopped; --reconnect"));
+                        HasSubstr("stopped (No such device); --reconnect"));
             continue;
         }
         EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
@@ -190,8 +193,10 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     come_back(kEvt3, 1280, 720);
     EXPECT_THAT(
         warnings,
-        testing::ElementsAre(HasSubstr("PSE2 of 320x320 px, expected PSE3 of 320x320 px as before"),
-                             HasSubstr("PSE3 of 1280x720 px, expected PSE3 of 320x320 px")));
+        testing::ElementsAre(
+            HasSubstr("'eventide testbed' with PSE2 of 320x320 px, expected 'eventide testbed' "
+                      "with PSE3 of 320x320 px as before"),
+            HasSubstr("PSE3 of 1280x720 px, expected 'eventide testbed' with PSE3 of 320x320")));
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     EXPECT_EQ(camera.info().width, 320);
     come_back(kEvt3, 320, 320);
@@ -199,6 +204,34 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
+/// Where the user says that a format means events, the format alone does not tell a camera.
+TEST(V4l2Camera, AnotherDeviceAtItsNodeIsNotTakenForIt) {
+    V4l2Testbed bed{sensor(V4L2_PIX_FMT_GREY)};
+    V4l2Settings stated;
+    stated.encoding = EvtEncoding::evt3;
+    std::vector<std::string> warnings;
+    auto camera = open(stated, true, test::keep_in(warnings));
+    bed.fail_next("DQBUF", ENODEV);
+    const auto look = [&] {
+        RawPacket packet;
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    bed.change_card("a webcam");
+    look();
+    bed.change_card("eventide testbed");
+    bed.change_format(V4L2_PIX_FMT_YUYV, 320, 320);
+    look();
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("'a webcam' with GREY of 320x320 px"),
+                                               HasSubstr("with YUYV of 320x320 px, expected "
+                                                         "'eventide testbed' with GREY")));
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    bed.change_format(V4L2_PIX_FMT_GREY, 320, 320);
+    bed.give({bytes_of({time_high(0)})});
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
 }
 
 TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {

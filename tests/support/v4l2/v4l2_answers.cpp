@@ -14,7 +14,6 @@ namespace eventide::testing_support {
 namespace {
 
 constexpr std::uint32_t kFirstControl = 0x00980900;
-constexpr char kCard[] = "eventide testbed";
 
 const char* name_of(gulong request) {
     switch (request) {
@@ -91,7 +90,7 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
     switch (request) {
         case VIDIOC_QUERYCAP:
             return with<v4l2_capability>(arg, [&](v4l2_capability& c, auto*) {
-                std::memcpy(c.card, kCard, sizeof kCard);
+                settings.card.copy(reinterpret_cast<char*>(c.card), sizeof c.card - 1);
                 c.device_caps = settings.output         ? V4L2_CAP_VIDEO_OUTPUT
                                 : settings.multi_planar ? V4L2_CAP_VIDEO_CAPTURE_MPLANE
                                                         : V4L2_CAP_VIDEO_CAPTURE;

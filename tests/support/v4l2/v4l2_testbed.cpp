@@ -103,6 +103,11 @@ void V4l2Testbed::change_format(std::uint32_t fourcc, int width, int height) {
     parts_->settings.height = height;
 }
 
+void V4l2Testbed::change_card(const std::string& card) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->settings.card = card;
+}
+
 void V4l2Testbed::take_controls_away() {
     const std::lock_guard lock{parts_->mutex};
     parts_->settings.controls.clear();

@@ -17,6 +17,7 @@ namespace eventide::testing_support {
 struct V4l2NodeSettings {
     bool output = false;  ///< takes frames instead of giving them
     bool multi_planar = false;
+    std::string card = "eventide testbed";
     std::uint32_t fourcc = 0;   ///< of a capture node
     int width = 0, height = 0;  ///< of a capture node's format
     bool streams = true;        ///< a capture node; else it can only be read from
@@ -64,6 +65,8 @@ public:
 
     /// As a driver that was loaded again, or media-ctl, leaves it.
     void change_format(std::uint32_t fourcc, int width, int height);
+    /// Another device is there.
+    void change_card(const std::string& card);
     /// The driver has none any more.
     void take_controls_away();
     V4l2NodeSettings::Control control(const std::string& name) const;
