@@ -214,6 +214,23 @@ private:
     std::optional<HostTime> arrived_, told_at_;  ///< of these words; of those that told last_
 };
 
+constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
+
+/// Where a file was joined to another: says that time began anew, if it did.
+class FileSeam {
+public:
+    void begin_file(std::int64_t last_us) { last_us_ = last_us; }
+    /// The first time of the file behind it.
+    void see(std::int64_t t_us, Batch& into) {
+        if (t_us < last_us_)
+            into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
+        last_us_ = kNoTime;
+    }
+
+private:
+    std::int64_t last_us_ = kNoTime;  ///< of the file before, until it was compared
+};
+
 /// A block of events on its way into a batch: written without checks for room, passed on when full.
 class EventBlock {
 public:
@@ -232,7 +249,5 @@ public:
 private:
     std::vector<Event> events_;
 };
-
-constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace eventide
