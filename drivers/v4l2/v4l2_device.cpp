@@ -147,9 +147,8 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
             return Status::lost;
         }
     pollfd poll_fd{fd_.get(), POLLIN, 0};
-    const int ready = ::poll(&poll_fd, 1, int(timeout.count()));
-    if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;
-    return dequeue(into);
+    if (::poll(&poll_fd, 1, int(timeout.count())) == 0) return Status::timeout;
+    return dequeue(into);  // which says what poll() would not
 }
 
 V4l2Device::Status V4l2Device::dequeue(Filled& into) {
@@ -208,10 +207,12 @@ struct KnownControl {
 bool may_set(int fd, const v4l2_query_ext_ctrl& query, const KnownControl& wanted) {
     v4l2_control now{query.id, 0};
     if ((query.flags & (V4L2_CTRL_FLAG_READ_ONLY | V4L2_CTRL_FLAG_DISABLED)) != 0) {
-        if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &now) == 0 && now.value == wanted.value) return false;
-        throw Error(ErrorKind::usage, wanted.called + " cannot be written: expected its value, " +
-                                          std::to_string(now.value) + ", found " +
-                                          std::to_string(wanted.value));
+        const bool is_known = v4l2_ioctl(fd, VIDIOC_G_CTRL, &now) == 0;
+        if (is_known && now.value == wanted.value) return false;
+        throw Error(ErrorKind::usage,
+                    wanted.called + " cannot be written: expected " +
+                        (is_known ? "its value, " + std::to_string(now.value) : "it left out") +
+                        ", found " + std::to_string(wanted.value));
     }
     if (wanted.value < query.minimum || wanted.value > query.maximum)
         throw Error(ErrorKind::usage,

@@ -30,6 +30,7 @@ struct V4l2NodeSettings {
     struct Control {
         std::int32_t minimum = 0, maximum = 0, value = 0;
         bool read_only = false, deaf = false;  ///< deaf: it keeps its value, and says so
+        bool disabled = false;
     };
     std::map<std::string, Control> controls;
 };
