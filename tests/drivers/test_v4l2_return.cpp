@@ -106,6 +106,44 @@ TEST(V4l2Camera, ASensorThatDoesNotStartLeavesNoMemoryMapped) {
     EXPECT_EQ(mapped_buffers(), 0U);
 }
 
+TEST(V4l2Camera, WhateverFailsWhileItIsOpenedAgainItComesBackAndLeavesNothingBehind) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open({}, true);
+    RawPacket packet;
+    std::size_t open_files = 0;
+    for (const char* request :
+         {"QUERYCAP", "G_FMT", "REQBUFS", "QUERYBUF", "QBUF", "STREAMON", "DQBUF"}) {
+        bed.fail_next("DQBUF", ENODEV);
+        EXPECT_EQ(camera.read(packet), ReadStatus::timeout);  // and opens it
+        bed.fail_next("DQBUF", ENODEV);
+        bed.fail_next(request, ENODEV, 2);
+        for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.gap_before) << request;
+        EXPECT_TRUE(packet.reopened) << request;
+        const std::size_t files = test::holdings().files;
+        if (open_files == 0) open_files = files;
+        EXPECT_EQ(files, open_files) << request;
+    }
+}
+
+TEST(V4l2Camera, ANodeThatVanishesIsWaitedFor) {
+    V4l2Testbed bed{sensor()};
+    std::vector<std::string> warnings;
+    auto camera = open({}, true, test::keep_in(warnings));
+    RawPacket packet;
+    bed.hide_node(true);
+    bed.fail_next("DQBUF", ENODEV);
+    for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("cannot be opened: No such file")));
+    bed.hide_node(false);
+    bed.give({bytes_of({time_high(0)})});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
 TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     V4l2Testbed bed{sensor()};
     RawPacket packet;

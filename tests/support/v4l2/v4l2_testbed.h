@@ -66,6 +66,8 @@ public:
 
     /// As a driver that was loaded again, or media-ctl, leaves it.
     void change_format(std::uint32_t fourcc, int width, int height);
+    /// /dev/video0 is gone, or there again.
+    void hide_node(bool hidden);
     /// Another device is there.
     void change_card(const std::string& card);
     /// The driver has none any more.
