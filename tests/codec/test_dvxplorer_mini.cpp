@@ -34,6 +34,7 @@ TEST(DvxplorerMini, ReferenceColumnAndGroupWordsMakeEvents) {
                                                                 pair(1, 2, 1, 0x80, false, true)}));
     EXPECT_THAT(parsed.data.events,
                 ElementsAre(event(2030, 7, 8, Polarity::on), event(2030, 7, 31, Polarity::off)));
+    EXPECT_EQ(parsed.damaged.total(), 0U) << "a word of 0 is padding";
 }
 
 TEST(DvxplorerMini, GroupsHaveSixBitsAndTheSecondIsUpToThirtyOneBehind) {
@@ -51,6 +52,25 @@ TEST(DvxplorerMini, AReferenceALittleBeforeTheLastIsNoise) {
     EXPECT_THAT(parsed.data.events, ElementsAre(event(5030, 7, 0, Polarity::on)));
     EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
     EXPECT_EQ(parsed.damaged.total(), 1U);
+}
+
+TEST(DvxplorerMini, AReferenceLessThanHalfTheRangeBeforeTheLastIsNoiseToo) {
+    const auto parsed =
+        parse(DvxplorerMiniParser{{}},
+              bytes_of<std::uint32_t>({reference(4'000'000), reference(1'910'000), frame32(7, 0),
+                                       pair(0, 0, 1, 0, false, false)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(4'000'000'000, 7, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
+}
+
+/// Ten bits of microseconds reach beyond the next millisecond.
+TEST(DvxplorerMini, AFrameBeforeTheLastOneIsLeftOutThoughItsReferenceIsLater) {
+    const auto parsed = parse(
+        DvxplorerMiniParser{{}},
+        bytes_of<std::uint32_t>({reference(2), frame32(7, 1010), pair(0, 0, 1, 0, false, false),
+                                 reference(3), frame32(8, 5), pair(0, 0, 1, 0, false, false)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(3010, 7, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
 }
 
 /// A second of the host's clock passes, or nobody knows how much.

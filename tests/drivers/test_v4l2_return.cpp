@@ -33,6 +33,7 @@ TEST(V4l2Camera, LostBuffersMarkAGap) {
                                        true}));  // after the loss, after the damaged buffer
     EXPECT_EQ(camera.counters()[CameraCount::lost_transfers], 3U);
     EXPECT_EQ(camera.counters()[CameraCount::damaged_transfers], 1U);
+    EXPECT_EQ(camera.counters()[CameraCount::transfers], 4U);
 }
 
 TEST(V4l2Camera, ADriverThatCountsAnewIsAGapButNoLoss) {
@@ -228,13 +229,15 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     };
     bed.fail_next("DQBUF", EIO);
     come_back(kEvt21, 320, 320);
-    come_back(kEvt3, 1280, 720);
+    come_back(kEvt3, 1280, 320);
+    come_back(kEvt3, 320, 240);
     EXPECT_THAT(
         warnings,
         testing::ElementsAre(
             HasSubstr("'eventide testbed' with PSE2 of 320x320 px, expected 'eventide testbed' "
                       "with PSE3 of 320x320 px as before"),
-            HasSubstr("PSE3 of 1280x720 px, expected 'eventide testbed' with PSE3 of 320x320")));
+            HasSubstr("PSE3 of 1280x320 px, expected 'eventide testbed' with PSE3 of 320x320"),
+            HasSubstr("PSE3 of 320x240 px")));
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     EXPECT_EQ(camera.info().width, 320);
     come_back(kEvt3, 320, 320);
