@@ -28,7 +28,7 @@ TEST(Summary, IsOneObjectWithTheKnownKeys) {
     const auto sum = summarize(
         *open_recording(folder.write("a.txt", "240 180\n0.1 1 2 1\n0.2 1 2 0\njunk\n0.3 1 2 1\n")));
     const auto json = nlohmann::json::parse(to_json(sum));
-    EXPECT_EQ(json.size(), 13U);
+    EXPECT_EQ(json.size(), 14U);
     EXPECT_EQ(json["format"], "text");
     EXPECT_EQ(json["width"], 240);
     EXPECT_EQ(json["height"], 180);
@@ -36,6 +36,7 @@ TEST(Summary, IsOneObjectWithTheKnownKeys) {
     EXPECT_EQ(json["on"], 2);
     EXPECT_EQ(json["first_us"], 100000);
     EXPECT_EQ(json["last_us"], 300000);
+    EXPECT_EQ(json["clock_resets"], 0);
     EXPECT_EQ(json["frames"], 0);
     EXPECT_EQ(json["imu"], 0);
     EXPECT_EQ(json["triggers"], 0);
@@ -70,6 +71,7 @@ TEST(Summary, GoesOnWhereTheClockBeginsAnew) {
         summarize(*open(events, {{again.front().t, Trigger::Kind::timestamp_reset, 0}}));
     EXPECT_EQ(sum.events, 2000U);
     EXPECT_EQ(sum.clock_resets, 1U);
+    EXPECT_EQ(nlohmann::json::parse(to_json(sum))["clock_resets"], 1);
     EXPECT_EQ(sum.span, once + (again.back().t - again.front().t));
 }
 
