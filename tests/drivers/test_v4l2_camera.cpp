@@ -183,6 +183,8 @@ TEST(V4l2Camera, ASizeThatIsStatedCountsAndOneThatNoSensorHasIsRefused) {
     V4l2Testbed bed{settings};
     EXPECT_THAT(failure_of([] { open(); }),
                 HasSubstr("says its sensor is 5000x320 px: state size"));
+    bed.change_format(kEvt3, 320, 0);
+    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("says its sensor is 320x0 px: state size"));
     V4l2Settings wanted;
     wanted.subdevice = "/dev/v4l-subdev0";
     wanted.width = 640;
