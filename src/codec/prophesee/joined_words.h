@@ -62,12 +62,28 @@ private:
         "% plugin_name ",   "% sensor_generation ",
         "% serial_number ", "% system_ID "};
 
+    static constexpr std::size_t kEnough = std::size_t{1} << 16;  ///< bytes of lines to be kept
+
     static Bytes bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
     static bool begins_header(std::string_view text) {
         return std::ranges::any_of(kBegins, [&](auto begin) { return text == begin; });
     }
     static bool may_begin_header(std::string_view text) {
         return std::ranges::any_of(kBegins, [&](auto begin) { return begin.starts_with(text); });
+    }
+    /// As far as there are bytes. Most of what begins with % goes on with something else.
+    static bool may_begin_header(Bytes bytes) {
+        if (bytes.size() > 1 && bytes[1] != std::byte{' '}) return false;
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return std::ranges::any_of(kBegins, [&](auto begin) {
+            return text.starts_with(begin) || begin.starts_with(text);
+        });
+    }
+    static std::size_t next_percent(Bytes bytes, std::size_t from) {
+        if (from >= bytes.size()) return bytes.size();
+        const void* found = std::memchr(&bytes[from], '%', bytes.size() - from);
+        return found ? std::size_t(static_cast<const std::byte*>(found) - bytes.data())
+                     : bytes.size();
     }
 
     template <typename Use>
@@ -81,9 +97,9 @@ private:
     template <typename Use>
     Bytes pass_words(Bytes bytes, Use& use) {
         if (line_.empty()) {
-            const void* found = std::memchr(bytes.data(), '%', bytes.size());
-            const auto n = found ? std::size_t(static_cast<const std::byte*>(found) - bytes.data())
-                                 : bytes.size();
+            std::size_t n = next_percent(bytes, 0);
+            while (n < bytes.size() && !may_begin_header(bytes.subspan(n)))
+                n = next_percent(bytes, n + 1);
             take(bytes.first(n), use);
             if (n == bytes.size()) return {};
             line_ = '%';
@@ -105,7 +121,7 @@ private:
         if (!is_percent_line_so_far(line_)) {
             end_header(std::exchange(line_, {}), use, joint);
         } else if (line_.ends_with('\n')) {
-            lines_ += line_;
+            if (lines_.size() < kEnough) lines_ += line_;
             const bool is_last = is_last_percent_line(std::exchange(line_, {}));
             if (is_last) end_header("", use, joint);
         }
