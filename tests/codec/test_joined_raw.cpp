@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <string>
 
 namespace eventide {
@@ -82,6 +83,24 @@ TEST(JoinedRaw, TheNextFileIsReadOnAndBeginsANewStreamWhereItIsEarlier) {
         EXPECT_EQ(parsed.data.triggers[0].kind, Trigger::Kind::timestamp_reset);
         EXPECT_LE(parsed.data.triggers[0].t, parsed.data.events[2].t);
         EXPECT_LT(parsed.clock, from_us(files.first_us)) << files.name;
+        expect_same_for_any_split(files.make, bytes);
+    }
+}
+
+/// The beginning of a much later file stands before the second.
+TEST(JoinedRaw, AFirstTimeThatLiesHidesNoNewStream) {
+    const std::vector<Bytes> lies{evt2_file(3000), evt21_file(3000), evt3_file(1500),
+                                  dat_file(200'000)};
+    constexpr std::array<std::size_t, 4> kOneEvent{8, 16, 8, 8};  // bytes
+    const std::vector<Joined> formats = all_formats();
+    for (std::size_t i = 0; i < formats.size(); ++i) {
+        const Joined& files = formats[i];
+        const Bytes lie(lies[i].begin(), lies[i].begin() + std::ptrdiff_t(kOneEvent[i]));
+        const Bytes bytes = join({files.first, to_bytes(files.header), lie, files.second});
+        const Parsed parsed = parse_whole(files.make, bytes);
+        ASSERT_EQ(parsed.data.events.size(), 4U) << files.name;
+        EXPECT_EQ(parsed.data.events[2].t, from_us(files.second_us)) << files.name;
+        EXPECT_EQ(parsed.data.triggers.size(), 1U) << files.name;
         expect_same_for_any_split(files.make, bytes);
     }
 }

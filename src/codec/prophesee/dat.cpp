@@ -111,7 +111,9 @@ void DatParser::take(std::span<const std::byte> records, Batch& into) {
         block_.pass(n, into);
         n = 0;
         seam_.see(t, into);
+        const std::size_t before = into.events.size();
         validator_.add(t, at.x, at.y, at.on, into, damage_);
+        if (into.events.size() > before) seam_.end();
     }
     block_.pass(n, into);
 }
@@ -142,6 +144,7 @@ void DatParser::let_trigger_go(Batch& into) {
     if (!held_trigger_) return;
     last_trigger_us_ = to_us(held_trigger_->t);
     into.triggers.push_back(*held_trigger_);
+    seam_.end();
     held_trigger_.reset();
 }
 

@@ -74,8 +74,8 @@ void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
         case time_high: {
             const std::size_t before = into.events.size();
             high_.push(upper & 0x0FFFFFFF, into, damage_);
-            seam_.see(high_.us(), into);
             take_let_go(into, before);
+            if (last_event_us_ == kNoTime) seam_.see(high_.us(), into);
             break;
         }
         case trigger:

@@ -141,10 +141,10 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             const bool first = !high_.is_known();
             const std::size_t before = into.events.size();
             high_.push(content, into, damage_);
-            seam_.see(high_.us() + time_base_us_, into);
             // The low bits follow in their own word and begin anew.
             if (first || high_.us() != high_us) t_us_ = high_.us();
             take_let_go(into, before);
+            if (last_event_us_ == kNoTime) seam_.see(high_.us() + time_base_us_, into);
             break;
         }
         case trigger:

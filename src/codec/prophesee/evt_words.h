@@ -220,15 +220,16 @@ constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
 class FileSeam {
 public:
     void begin_file(std::int64_t last_us) { last_us_ = last_us; }
-    /// The first time of the file behind it.
+    /// A time of the file behind it, each until one is believed: the first may lie.
     void see(std::int64_t t_us, Batch& into) {
-        if (t_us < last_us_)
-            into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
-        last_us_ = kNoTime;
+        if (t_us >= last_us_) return;
+        into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
+        end();
     }
+    void end() { last_us_ = kNoTime; }  ///< its data came out
 
 private:
-    std::int64_t last_us_ = kNoTime;  ///< of the file before, until it was compared
+    std::int64_t last_us_ = kNoTime;  ///< of the file before
 };
 
 /// A block of events on its way into a batch: written without checks for room, passed on when full.
