@@ -105,6 +105,16 @@ TEST(JoinedRaw, AFirstTimeThatLiesHidesNoNewStream) {
     }
 }
 
+TEST(JoinedRaw, AFileWithoutDataBetweenHidesNoNewStream) {
+    for (const Joined& files : all_formats()) {
+        const Bytes header = to_bytes(files.header);
+        const Parsed parsed =
+            parse_whole(files.make, join({files.first, header, header, files.second}));
+        EXPECT_EQ(parsed.data.events.size(), 4U) << files.name;
+        EXPECT_EQ(parsed.data.triggers.size(), 1U) << files.name;
+    }
+}
+
 TEST(JoinedRaw, ALaterFileGoesOn) {
     for (const Joined& files : all_formats()) {
         const Bytes bytes = join({files.second, to_bytes(files.header), files.first});

@@ -219,7 +219,7 @@ constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
 /// Where a file was joined to another: says that time began anew, if it did.
 class FileSeam {
 public:
-    void begin_file(std::int64_t last_us) { last_us_ = last_us; }
+    void begin_file(std::int64_t last_us) { last_us_ = std::max(last_us_, last_us); }
     /// A time of the file behind it, each until one is believed: the first may lie.
     void see(std::int64_t t_us, Batch& into) {
         if (t_us >= last_us_) return;
@@ -229,7 +229,7 @@ public:
     void end() { last_us_ = kNoTime; }  ///< its data came out
 
 private:
-    std::int64_t last_us_ = kNoTime;  ///< of the file before
+    std::int64_t last_us_ = kNoTime;  ///< of what came out before
 };
 
 /// A block of events on its way into a batch: written without checks for room, passed on when full.
