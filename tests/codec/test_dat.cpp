@@ -60,6 +60,15 @@ TEST(Dat, TriggersHaveAnInputAndAnEdge) {
 }
 
 /// Inputs may rise at one time, the first two of a file among them.
+TEST(Dat, AFirstTriggerThatTheNextContradictsIsDamage) {
+    const Parsed parsed = parse_whole(
+        make(Record::triggers), to_stream({9'000'000, 6U << 8 | 1U, 7, 6U << 8 | 1U, 8, 6U << 8}));
+    const std::vector<Trigger> expected{{from_us(7), Trigger::Kind::rising, 6},
+                                        {from_us(8), Trigger::Kind::falling, 6}};
+    EXPECT_TRUE(parsed.data.triggers == expected);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+}
+
 TEST(Dat, ATriggerThatWaitsWhereALossBeginsIsLost) {
     DatParser parser(Record::triggers);
     Batch batch;

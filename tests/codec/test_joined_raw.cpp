@@ -159,6 +159,20 @@ TEST(JoinedRaw, TheTimeThatOurOwnFilesOfEvt3CountFromIsItsOwn) {
     EXPECT_EQ(parsed.data.events[0].t, from_us(7'000'000 + 4096 + 5));
     EXPECT_EQ(parsed.data.events[2].t, from_us(90'000'000 + 4096 + 5));
     EXPECT_THAT(parsed.data.triggers, IsEmpty());
+    const Parsed back = parse_whole(
+        [] { return std::make_unique<Evt3Parser>(640, 480, 90'000'000); },
+        join({evt3_file(1), to_bytes("% evt 3.0\n% time_base_us 7000000\n% end\n"), evt3_file(1)}));
+    ASSERT_EQ(back.data.events.size(), 4U);
+    EXPECT_EQ(back.data.events[2].t, from_us(7'000'000 + 4096 + 5));
+    EXPECT_EQ(back.data.triggers.size(), 1U);
+}
+
+/// The next file's times have nothing to do with the range of those before.
+TEST(JoinedRaw, AFallToTheNextFileIsNoWrap) {
+    const Parsed parsed = parse_whole(
+        evt2::kMake2, join({evt2_file(0x0FFFFF00), to_bytes(kRawHeader), evt2_file(10)}));
+    ASSERT_EQ(parsed.data.events.size(), 4U);
+    EXPECT_EQ(parsed.data.events[2].t, from_us(10 * 64 + 5));
 }
 
 std::string text_of(std::span<const std::byte> bytes) {

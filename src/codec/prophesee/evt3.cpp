@@ -132,7 +132,6 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             take_vector(content & 0xFF, 8, into);
             break;
         case time_low:
-            if (!high_.is_known()) break;
             t_us_ = high_.us() + content;
             if (high_.is_sure()) move_clock();
             break;
