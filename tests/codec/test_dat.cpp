@@ -70,14 +70,16 @@ TEST(Dat, AFirstTriggerThatTheNextContradictsIsDamage) {
 }
 
 TEST(Dat, ATriggerThatWaitsWhereALossBeginsIsLost) {
-    DatParser parser(Record::triggers);
-    Batch batch;
-    parser.parse(to_stream({7, 1}), batch);
-    parser.resync();
-    parser.parse(to_stream({5, 1, 6, 0}), batch);
-    const std::vector<Trigger> expected{{from_us(5), Trigger::Kind::rising, 0},
-                                        {from_us(6), Trigger::Kind::falling, 0}};
-    EXPECT_EQ(batch.triggers, expected);
+    for (const unsigned behind : {5U, 8U}) {
+        DatParser parser(Record::triggers);
+        Batch batch;
+        parser.parse(to_stream({7, 1}), batch);
+        parser.resync();
+        parser.parse(to_stream({behind, 1, behind + 1, 0}), batch);
+        const std::vector<Trigger> expected{{from_us(behind), Trigger::Kind::rising, 0},
+                                            {from_us(behind + 1), Trigger::Kind::falling, 0}};
+        EXPECT_EQ(batch.triggers, expected);
+    }
 }
 
 TEST(Dat, TriggersOfOneTimeAreNoneBeforeEachOther) {

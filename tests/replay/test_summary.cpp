@@ -46,6 +46,40 @@ TEST(Summary, IsOneObjectWithTheKnownKeys) {
     EXPECT_TRUE(nlohmann::json::parse(to_json({}))["first_us"].is_null());
 }
 
+TEST(Summary, CountsImagesSamplesAndTriggers) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.aedat4"), OutputOptions{}, *find_format("aedat4"), header);
+    Batch batch;
+    batch.events = some_events(100, 1'000'000);
+    ReferenceImage image;
+    image.t = image.exposure_begin = image.exposure_end = from_us(1'000'000);
+    image.pixels = Array2<std::uint16_t>(128, 128);
+    for (int i = 0; i < 2; ++i) batch.add_image(image);
+    for (int i = 0; i < 3; ++i) batch.imu.emplace_back().t = from_us(1'000'000 + i);
+    for (int i = 0; i < 4; ++i)
+        batch.triggers.push_back({from_us(1'000'000 + i), Trigger::Kind::rising, 0});
+    file.write(batch);
+    file.finish();
+    const Summary sum = summarize(*open_recording(folder.path("a.aedat4")));
+    EXPECT_EQ(sum.events, 100U);
+    EXPECT_EQ(sum.frames, 2U);
+    EXPECT_EQ(sum.imu, 3U);
+    EXPECT_EQ(sum.triggers, 4U);
+}
+
+/// Of whoever waits no longer.
+TEST(Summary, StopsWhereItIsTold) {
+    const TestFolder folder;
+    const auto recording = open_recording(folder.write("a.txt", as_text(some_events(50'000, 0))));
+    int calls = 0;
+    const Summary sum = summarize(*recording, [&] { return ++calls < 2; });
+    EXPECT_EQ(calls, 2);
+    EXPECT_LT(sum.events, 50'000U);
+    EXPECT_GT(sum.events, 0U);
+}
+
 TEST(Summary, GoesOnWhereTheClockBeginsAnew) {
     const TestFolder folder;
     const auto open = [&](const std::vector<Event>& events, std::vector<Trigger> triggers) {
