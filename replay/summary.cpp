@@ -94,6 +94,7 @@ std::string to_json(const Summary& sum) {
                                   {"on", sum.on},
                                   {"first_us", nullptr},
                                   {"last_us", nullptr},
+                                  {"clock_resets", sum.clock_resets},
                                   {"frames", sum.frames},
                                   {"imu", sum.imu},
                                   {"triggers", sum.triggers},

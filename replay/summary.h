@@ -35,9 +35,9 @@ Summary summarize(Recording& recording, const std::function<bool()>& progress = 
 /// Of a recording at its beginning, which is read as far as that; empty where it has no event.
 std::optional<SensorTime> first_event_time(Recording& recording);
 
-/// One object: format, width, height, events, on, first_us, last_us (null without events), frames,
-/// imu, triggers, flicker_hz (null where no light flickered), in_flicker, damaged (counts by
-/// reason, all reasons).
+/// One object: format, width, height, events, on, first_us, last_us (null without events),
+/// clock_resets, frames, imu, triggers, flicker_hz (null where no light flickered), in_flicker,
+/// damaged (counts by reason, all reasons).
 std::string to_json(const Summary& summary);
 
 }  // namespace eventide

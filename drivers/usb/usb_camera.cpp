@@ -3,7 +3,6 @@
 #include "src/core/error.h"
 
 #include <algorithm>
-#include <cctype>
 #include <thread>
 #include <utility>
 
@@ -85,11 +84,23 @@ void UsbCamera::open() {
     if (first) {  // others may read it from then on
         info.serial = identity.serial;
         info_ = std::move(info);
+        expect_return_of(identity);
     }
-    // The same camera must come back, not another; one without a serial number to the same port.
-    selector_.serial = identity.has_serial ? identity.serial : "";
-    selector_.port = identity.has_serial ? "" : identity.port;
+}
+
+/// The same camera must come back, not another; one without a serial number of its own to the same
+/// port.
+void UsbCamera::expect_return_of(const UsbIdentity& identity) {
     selector_.bus = selector_.address = -1;
+    if (!options_.reconnect) return;
+    selector_.serial = identity.has_serial ? identity.serial : "";
+    const auto all = identity.has_serial ? list_usb_devices(selector_) : std::vector{identity};
+    const auto alike = std::ranges::count(all, identity.serial, &UsbIdentity::serial);
+    if (!identity.has_serial || alike > 1) selector_.port = identity.port;
+    if (alike > 1 && options_.warn)
+        options_.warn(std::to_string(alike) + " " + kind_.name +
+                      " say that their serial number is '" + identity.serial +
+                      "': if this one is unplugged, it is taken back at its port alone");
 }
 
 std::size_t UsbCamera::packet_bytes() const {
@@ -139,6 +150,7 @@ bool UsbCamera::wait_for_begin() {
 ReadStatus UsbCamera::read(RawPacket& into) {
     into.bytes.clear();
     if (!stopped_ && !device_) return wait_for_return();
+    const bool was_streaming = stream_ != nullptr;
     try {
         if (!stopped_ && !stream_) start();
         if (stopped_) {
@@ -151,6 +163,12 @@ ReadStatus UsbCamera::read(RawPacket& into) {
     } catch (const UsbDisconnected&) {
         into.bytes.clear();
         return lost();
+    } catch (const Error& error) {  // it is there, and may work once it was opened again
+        if (!options_.reconnect || !was_streaming) throw;
+        into.bytes.clear();
+        stop_device();
+        warnings_.tell(error);
+        return ReadStatus::timeout;
     }
 }
 
@@ -270,56 +288,6 @@ void UsbCamera::stop_device() noexcept {
         // Unplugged meanwhile: there is nothing left to stop.
     }
     close();
-}
-
-namespace {
-
-/// Whether a serial number can be given on a command line as it is, and is not taken for a place.
-bool is_word(const std::string& serial) {
-    return !serial.empty() && std::ranges::all_of(serial, [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-    });
-}
-
-CameraDescription describe(const UsbKind& kind, const UsbIdentity& identity) {
-    CameraDescription camera;
-    camera.name = kind.name;
-    camera.serial = identity.serial;
-    camera.bus = identity.bus;
-    camera.address = identity.address;
-    camera.source = kind.scheme + (is_word(identity.serial) ? identity.serial
-                                                            : std::to_string(identity.bus) + ":" +
-                                                                  std::to_string(identity.address));
-    camera.firmware = std::to_string(identity.firmware);
-    camera.problem = identity.problem;
-    return camera;
-}
-
-}  // namespace
-
-std::vector<CameraDescription> list_usb_cameras(
-    const UsbKind& kind,
-    const std::function<std::unique_ptr<UsbCamera>(const UsbCameraOptions&)>& open) {
-    UsbSelector selector;
-    selector.products = kind.products;
-    std::vector<CameraDescription> cameras;
-    for (const UsbIdentity& identity : list_usb_devices(selector)) {
-        CameraDescription camera = describe(kind, identity);
-        if (camera.problem.empty()) {
-            UsbCameraOptions options;
-            options.bus = identity.bus;
-            options.address = identity.address;
-            try {
-                const auto opened = open(options);
-                camera.name = opened->info().name;
-                camera.logic = opened->logic();
-            } catch (const Error& error) {
-                camera.problem = error.what();
-            }
-        }
-        cameras.push_back(std::move(camera));
-    }
-    return cameras;
 }
 
 }  // namespace eventide

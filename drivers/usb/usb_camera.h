@@ -30,7 +30,8 @@ struct UsbWaits {
 struct UsbCameraOptions {
     std::string serial;          ///< empty: the first camera that can be used
     int bus = -1, address = -1;  ///< -1: any
-    bool reconnect = false;  ///< wait for the camera to come back instead of ending with an error
+    /// Open the camera again, once it is back or works again, instead of ending with an error.
+    bool reconnect = false;
     std::function<void(const std::string&)> warn = {};  ///< as CameraOptions::warn
     UsbWaits waits;
 };
@@ -100,6 +101,7 @@ private:
     void look_at_drops();
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();
+    void expect_return_of(const UsbIdentity& identity);
     ReadStatus lost();
     ReadStatus wait_for_return();
 

@@ -52,10 +52,10 @@ const Coding& coding_of(EvtEncoding encoding) {
     return *std::ranges::find(kCodings, encoding, &Coding::encoding);
 }
 
-/// "PSE3 of 1280x720 px"
-std::string words_text(EvtEncoding encoding, const SensorInfo& info) {
-    return fourcc_text(coding_of(encoding).fourcc) + " of " + std::to_string(info.width) + "x" +
-           std::to_string(info.height) + " px";
+/// "'imx636' with PSE3 of 1280x720 px"
+std::string device_text(const SensorInfo& info, std::uint32_t fourcc) {
+    return "'" + info.name + "' with " + fourcc_text(fourcc) + " of " + std::to_string(info.width) +
+           "x" + std::to_string(info.height) + " px";
 }
 
 }  // namespace
@@ -112,26 +112,35 @@ void V4l2Camera::open() {
                     "the camera " + node_.string() + " says its sensor is " +
                         std::to_string(info.width) + "x" + std::to_string(info.height) +
                         " px: state size = [width, height] in the camera's settings");
-    const bool first = info_.width == 0;
-    if (!first &&
-        (encoding != encoding_ || info.width != info_.width || info.height != info_.height))
-        throw Error(ErrorKind::device, "the camera " + node_.string() + " came back with " +
-                                           words_text(*encoding, info) + ", expected " +
-                                           words_text(encoding_, info_) +
-                                           " as before: set it up as it was (media-ctl)");
-    if (first) info_ = std::move(info);
-    encoding_ = *encoding;
+    if (info_.width == 0) {
+        info_ = std::move(info);
+        fourcc_ = device_->fourcc();
+        encoding_ = *encoding;
+    } else {
+        require_same(info);
+    }
     last_sequence_.reset();
+}
+
+/// Whatever else is at the node by now is not taken for the camera.
+void V4l2Camera::require_same(const SensorInfo& found) const {
+    if (device_->fourcc() == fourcc_ && found.name == info_.name && found.width == info_.width &&
+        found.height == info_.height)
+        return;
+    throw Error(ErrorKind::device, "the camera " + node_.string() + " came back as " +
+                                       device_text(found, device_->fourcc()) + ", expected " +
+                                       device_text(info_, fourcc_) +
+                                       " as before: set it up as it was (media-ctl)");
 }
 
 ReadStatus V4l2Camera::read(RawPacket& into) {
     into.bytes.clear();
     if (stopped_) return ReadStatus::end;
-    if (!device_) return lost();
+    if (!device_) return wait_for_return();
     V4l2Device::Filled filled;
     switch (device_->read(filled, kReadTimeout)) {
         case V4l2Device::Status::lost:
-            return lost();
+            return lost(filled.why);
         case V4l2Device::Status::timeout:
             return ReadStatus::timeout;
         case V4l2Device::Status::data:
@@ -163,14 +172,19 @@ void V4l2Camera::note_sequence(std::uint32_t sequence) {
     last_sequence_ = sequence;
 }
 
-ReadStatus V4l2Camera::lost() {
-    if (device_ && !reconnect_)
-        throw Error(ErrorKind::device, "the camera " + node_.string() + " stopped" + kReconnect);
+ReadStatus V4l2Camera::lost(const std::string& why) {
+    const std::string name = "the camera " + node_.string();
+    if (!reconnect_) throw Error(ErrorKind::device, name + " stopped (" + why + ")" + kReconnect);
+    device_.reset();
+    if (!reopened_) return wait_for_return();
+    warnings_.tell(
+        Error(ErrorKind::device, name + " is there, but stops before it gives data (" + why + ")"));
+    std::this_thread::sleep_for(kReadTimeout);
+    return ReadStatus::timeout;
+}
+
+ReadStatus V4l2Camera::wait_for_return() {
     try {
-        if (device_ && reopened_)
-            throw Error(ErrorKind::device, "the camera " + node_.string() +
-                                               " is there, but stops before it gives data");
-        device_.reset();
         open();
         gap_ = reopened_ = true;
     } catch (const Error& error) {  // not there yet: the next look will tell

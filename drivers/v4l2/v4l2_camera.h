@@ -64,7 +64,9 @@ public:
 private:
     void open();
     void note_sequence(std::uint32_t sequence);
-    ReadStatus lost();
+    void require_same(const SensorInfo& found) const;
+    ReadStatus lost(const std::string& why);
+    ReadStatus wait_for_return();
 
     std::filesystem::path node_;
     V4l2Settings settings_;
@@ -72,6 +74,7 @@ private:
     WaitWarnings warnings_;
     SensorInfo info_;
     EvtEncoding encoding_ = EvtEncoding::evt3;
+    std::uint32_t fourcc_ = 0;  ///< of the node, once it was opened
     std::unique_ptr<V4l2Device> device_;
     std::optional<std::uint32_t> last_sequence_;
     bool gap_ = false;

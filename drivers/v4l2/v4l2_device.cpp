@@ -1,6 +1,7 @@
 #include "drivers/v4l2/v4l2_device.h"
 
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <fcntl.h>
 #include <linux/v4l2-subdev.h>
@@ -11,10 +12,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 
 namespace eventide {
 namespace {
+
+constexpr const char* kIfMissing = "is the driver loaded and the sensor connected?";
+constexpr const char* kIfBusy = "in use by another program";
 
 bool is_multi_planar(std::uint32_t type) {
     return type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
@@ -51,11 +56,8 @@ V4l2Device::Buffer::~Buffer() {
 }
 
 void V4l2Device::fail(const std::string& what, int error, const std::string& way_out) const {
-    throw Error(ErrorKind::device,
-                "the camera " + node_.string() + " " + what + ": " +
-                    explain_v4l2_error(error, "is the driver loaded and the sensor connected?",
-                                       "in use by another program") +
-                    way_out);
+    throw Error(ErrorKind::device, "the camera " + node_.string() + " " + what + ": " +
+                                       explain_v4l2_error(error, kIfMissing, kIfBusy) + way_out);
 }
 
 /// On boards where sensor and receiver are parts of a media graph, only this request looks whether
@@ -139,12 +141,17 @@ int V4l2Device::queue(std::uint32_t index) {
 }
 
 V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds timeout) {
-    if (held_ && queue(*std::exchange(held_, std::nullopt)) != 0)
-        return Status::lost;  // EIO, ENODEV, as below
+    if (held_)
+        if (const int error = queue(*std::exchange(held_, std::nullopt)); error != 0) {
+            into.why = std::system_category().message(error);  // EIO, ENODEV, as of dequeue()
+            return Status::lost;
+        }
     pollfd poll_fd{fd_.get(), POLLIN, 0};
-    const int ready = ::poll(&poll_fd, 1, int(timeout.count()));
-    if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;
+    if (::poll(&poll_fd, 1, int(timeout.count())) == 0) return Status::timeout;
+    return dequeue(into);  // which says what poll() would not
+}
 
+V4l2Device::Status V4l2Device::dequeue(Filled& into) {
     v4l2_buffer buffer{};
     v4l2_plane plane{};
     buffer.type = type_;
@@ -153,15 +160,16 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
         buffer.m.planes = &plane;
         buffer.length = 1;
     }
-    switch (v4l2_ioctl(fd_.get(), VIDIOC_DQBUF, &buffer)) {
-        case 0:
-            break;
-        case EAGAIN:
-            return Status::timeout;
-        default:
-            return Status::lost;  // EIO, ENODEV: the sensor stopped or went away
+    const int error = v4l2_ioctl(fd_.get(), VIDIOC_DQBUF, &buffer);
+    if (error == EAGAIN) return Status::timeout;
+    if (error != 0) {  // EIO, ENODEV: the sensor stopped or went away
+        into.why = std::system_category().message(error);
+        return Status::lost;
     }
-    if (buffer.index >= buffers_.size()) return Status::lost;
+    if (buffer.index >= buffers_.size()) {
+        into.why = "it gave a buffer there is not";
+        return Status::lost;
+    }
     held_ = buffer.index;
     const std::span<const std::byte> filled = buffers_[buffer.index].bytes();
     const std::size_t offset = is_multi_planar(type_) ? plane.data_offset : 0;
@@ -175,6 +183,20 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
 
 namespace {
 
+/// As v4l2-ctl lists a control: what is neither letter nor digit becomes one underscore.
+std::string listed_name(std::string_view name) {
+    std::string listed;
+    bool between = false;
+    for (const char c : name) {
+        const bool is_word =
+            (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        if (is_word && between && !listed.empty()) listed += '_';
+        if (is_word) listed += c;
+        between = !is_word;
+    }
+    return lower_case(listed);
+}
+
 struct KnownControl {
     std::uint32_t id = 0;
     std::string called;  // "control 'bias_fo' of /dev/video0", behind where it was said
@@ -185,10 +207,12 @@ struct KnownControl {
 bool may_set(int fd, const v4l2_query_ext_ctrl& query, const KnownControl& wanted) {
     v4l2_control now{query.id, 0};
     if ((query.flags & (V4L2_CTRL_FLAG_READ_ONLY | V4L2_CTRL_FLAG_DISABLED)) != 0) {
-        if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &now) == 0 && now.value == wanted.value) return false;
-        throw Error(ErrorKind::usage, wanted.called + " cannot be written: expected its value, " +
-                                          std::to_string(now.value) + ", found " +
-                                          std::to_string(wanted.value));
+        const bool is_known = v4l2_ioctl(fd, VIDIOC_G_CTRL, &now) == 0;
+        if (is_known && now.value == wanted.value) return false;
+        throw Error(ErrorKind::usage,
+                    wanted.called + " cannot be written: expected " +
+                        (is_known ? "its value, " + std::to_string(now.value) : "it left out") +
+                        ", found " + std::to_string(wanted.value));
     }
     if (wanted.value < query.minimum || wanted.value > query.maximum)
         throw Error(ErrorKind::usage,
@@ -221,7 +245,8 @@ void set_v4l2_controls(int fd, const std::string& device,
     v4l2_query_ext_ctrl query{};
     constexpr std::uint32_t kNext = V4L2_CTRL_FLAG_NEXT_CTRL;
     for (query.id = kNext; v4l2_ioctl(fd, VIDIOC_QUERY_EXT_CTRL, &query) == 0; query.id |= kNext) {
-        const auto own = missing.extract(query.name);
+        auto own = missing.extract(query.name);
+        if (own.empty()) own = missing.extract(listed_name(query.name));
         if (own.empty()) continue;
         KnownControl control{query.id,
                              place_of(own.key()) + "control '" + own.key() + "' of " + device,
@@ -238,7 +263,7 @@ FileDescriptor open_for_controls(const std::filesystem::path& node) {
     FileDescriptor fd{::open(node.c_str(), O_RDWR | O_CLOEXEC)};
     if (fd.get() < 0)
         throw Error(ErrorKind::device, "the camera " + node.string() + " cannot be opened: " +
-                                           std::system_category().message(errno));
+                                           explain_v4l2_error(errno, kIfMissing, kIfBusy));
     return fd;
 }
 

@@ -24,6 +24,7 @@ public:
         std::span<const std::byte> bytes;  ///< borrowed until the next read
         std::uint32_t sequence = 0;        ///< of the driver: a jump is a loss
         bool damaged = false;              ///< the driver says that the buffer may be incomplete
+        std::string why{};                 ///< of `lost`: for people
     };
 
     /// Opens the node and starts streaming into `buffers` mapped buffers. Throws Error (device):
@@ -58,6 +59,7 @@ private:
     void query();
     void map_buffers(int wanted);
     void start_streaming();
+    Status dequeue(Filled& into);
     int queue(std::uint32_t index);  ///< 0 or errno
     [[noreturn]] void fail(const std::string& what, int error,
                            const std::string& way_out = "") const;
@@ -72,7 +74,8 @@ private:
     std::optional<std::uint32_t> held_;  ///< the buffer whose bytes are lent out
 };
 
-/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable"), and reads each back;
+/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable") or v4l2-ctl lists them
+/// by ("vertical_flip" for "Vertical Flip"), and reads each back;
 /// one that cannot be written has to have the value already. `places` tells where each was said,
 /// for messages. Throws Error (usage) naming the control that is unknown, read-only or out of
 /// range, before any is set.

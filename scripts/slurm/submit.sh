@@ -57,6 +57,9 @@ for recording in "${recordings[@]}"; do
   if $states && ! $ignores_images && [ "$(number_in "$info" frames)" != 0 ]; then
     refuse "submit.sh: --states: $recording has images, which would correct frames; expected --frames ignore among the options of run"
   fi
+  if [[ $(number_in "$info" clock_resets) != 0 ]]; then
+    refuse "submit.sh: --segment: the clock of $recording began anew within it, so that its times do not tell the segments; leave out --segment, or convert it to .raw or .txt, in which times go on"
+  fi
   # Frames count from just before the first event, as of one run.
   first=$(($(number_in "$info" first_us) - 1)) last=$(number_in "$info" last_us)
   for ((from = first; from <= last; from += segment * 1000000)); do

@@ -68,12 +68,48 @@ TEST(AedatTimeline, AStepBackIsCountedAndAResetIsFollowed) {
     std::vector<Bytes> words{dvs(1, 1, true, 5'000'000)};
     for (int i = 0; i < 100; ++i) words.push_back(dvs(1, 1, true, i * 1000));
     const Parsed reset = parse_whole(davis(), join(words));
-    EXPECT_EQ(reset.damage[DamageReason::time_backwards],
-              std::uint64_t(AedatTimeline::kResetRecords));
-    EXPECT_EQ(reset.data.events.size(), 1U + 100 - AedatTimeline::kResetRecords);
-    EXPECT_EQ(reset.data.triggers.size(), 1U);
-    EXPECT_EQ(to_us(reset.data.events.back().t),
-              5'000'000 + 1000 * (99 - AedatTimeline::kResetRecords));
+    EXPECT_EQ(reset.damage.total(), 0U);
+    EXPECT_EQ(reset.data.events.size(), 1U + 100) << "none is lost";
+    EXPECT_EQ(reset.data.triggers,
+              (std::vector{Trigger{from_us(5'000'000), Trigger::Kind::timestamp_reset, 0}}));
+    EXPECT_EQ(to_us(reset.data.events[1].t), 5'000'000);
+    EXPECT_EQ(to_us(reset.data.events.back().t), 5'000'000 + 99 * 1000);
+}
+
+TEST(AedatTimeline, AResetTakesSamplesAndImagesAlongWithTheEvents) {
+    std::vector<Bytes> words{dvs(1, 1, true, 5'000'000)};
+    for (unsigned measure = 0; measure < 7; ++measure) words.push_back(imu(measure, 1, 10));
+    for (const bool is_signal : {false, true})
+        for (int x = 0; x < 2; ++x)
+            words.push_back(aps(is_signal, x, 0, 500, 20 + 2 * int(is_signal) + x, 1));
+    words.push_back(record(1U << 10, 30));
+    for (int i = 0; i < 40; ++i) words.push_back(record(1U << 12, 100 + i));
+    const Parsed parsed = parse_whole(davis(2, 1), join(words));
+    ASSERT_EQ(parsed.data.imu.size(), 1U);
+    EXPECT_EQ(parsed.data.imu[0].t, from_us(5'000'000));
+    ASSERT_EQ(parsed.data.images.size(), 1U);
+    EXPECT_GT(parsed.data.images[0].t, from_us(5'000'000));
+    ASSERT_EQ(parsed.data.triggers.size(), 2U);
+    EXPECT_EQ(parsed.data.triggers[1].t, from_us(5'000'020));
+    expect_same_for_any_split(davis(2, 1), join(words));
+}
+
+TEST(AedatTimeline, AResetIsFollowedThroughJitterAsWell) {
+    Stamps stamps{kSecond};
+    for (int i = 0; i < 40; ++i) stamps.push_back(100 + i - 2 * (i % 2));
+    const Told told = told_by(stamps);
+    EXPECT_THAT(told.resets, ElementsAre(1'000'000));
+    EXPECT_EQ(told.times[1], 1'000'000);
+    EXPECT_EQ(told.times.back(), 1'000'037);
+}
+
+/// They may come later than the events around them.
+TEST(AedatTimeline, RecordsInThePastThatAreNoResetComeOutInTheirPlace) {
+    EXPECT_THAT(told_by({kSecond, 3, 4, kSecond + 1}).times,
+                ElementsAre(1'000'000, 3, 4, 1'000'001));
+    EXPECT_THAT(told_by({kSecond, 3, 2, kSecond + 1}).times,
+                ElementsAre(1'000'000, 3, 2, 1'000'001));
+    EXPECT_THAT(told_by({kSecond, 3}).times, ElementsAre(1'000'000, 3)) << "at the end, too";
 }
 
 TEST(AedatTimeline, AFlippedBitInATimeCostsOneRecord) {
@@ -102,7 +138,7 @@ TEST(AedatTimeline, ALeapIsConfirmedByARecordOfItsOwnTime) {
 TEST(AedatTimeline, AFallOfLessThanHalfItsRangeIsNoWrap) {
     const Told told = told_by(run(1000 * kSecond, 1, 3) + run(0, 1, 100));
     EXPECT_THAT(told.resets, ElementsAre(1'000'000'002));
-    EXPECT_EQ(told.times.back(), 1'000'000'002 + 99 - AedatTimeline::kResetRecords);
+    EXPECT_EQ(told.times.back(), 1'000'000'002 + 99);
 }
 
 TEST(AedatTimeline, AClockThatIsSetBackBehindItsOverflowIsNoWrapEither) {

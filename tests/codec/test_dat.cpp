@@ -60,15 +60,26 @@ TEST(Dat, TriggersHaveAnInputAndAnEdge) {
 }
 
 /// Inputs may rise at one time, the first two of a file among them.
+TEST(Dat, AFirstTriggerThatTheNextContradictsIsDamage) {
+    const Parsed parsed = parse_whole(
+        make(Record::triggers), to_stream({9'000'000, 6U << 8 | 1U, 7, 6U << 8 | 1U, 8, 6U << 8}));
+    const std::vector<Trigger> expected{{from_us(7), Trigger::Kind::rising, 6},
+                                        {from_us(8), Trigger::Kind::falling, 6}};
+    EXPECT_TRUE(parsed.data.triggers == expected);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+}
+
 TEST(Dat, ATriggerThatWaitsWhereALossBeginsIsLost) {
-    DatParser parser(Record::triggers);
-    Batch batch;
-    parser.parse(to_stream({7, 1}), batch);
-    parser.resync();
-    parser.parse(to_stream({5, 1, 6, 0}), batch);
-    const std::vector<Trigger> expected{{from_us(5), Trigger::Kind::rising, 0},
-                                        {from_us(6), Trigger::Kind::falling, 0}};
-    EXPECT_EQ(batch.triggers, expected);
+    for (const unsigned behind : {5U, 8U}) {
+        DatParser parser(Record::triggers);
+        Batch batch;
+        parser.parse(to_stream({7, 1}), batch);
+        parser.resync();
+        parser.parse(to_stream({behind, 1, behind + 1, 0}), batch);
+        const std::vector<Trigger> expected{{from_us(behind), Trigger::Kind::rising, 0},
+                                            {from_us(behind + 1), Trigger::Kind::falling, 0}};
+        EXPECT_EQ(batch.triggers, expected);
+    }
 }
 
 TEST(Dat, TriggersOfOneTimeAreNoneBeforeEachOther) {

@@ -115,6 +115,46 @@ TEST(Dvxplorer, AnImuSampleBehindALossWaitsForATime) {
     EXPECT_EQ(data.imu.size(), 1U);
 }
 
+TEST(Dvxplorer, AnImuSampleThatBeginsBeforeTheLastHasEndedCostsThatOne) {
+    std::vector<std::uint16_t> words{time(5), 5, 0x53E0, 0x5001, 5, 0x53E0};
+    words.insert(words.end(), 14, 0x5000);
+    words.push_back(7);
+    const auto parsed = fx3(words);
+    EXPECT_EQ(parsed.data.imu.size(), 1U);
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
+}
+
+TEST(Dvxplorer, WordsThatMeanNothingAreCounted) {
+    const auto parsed = fx3({time(5), 5, 0x53E0, 0x5104, 0x5204, 0x6000, 6, 99});
+    EXPECT_EQ(parsed.damaged[DamageReason::unknown_word], 5U);
+}
+
+TEST(Dvxplorer, HalfAWordIsDroppedAtALossAndCountedAtTheEnd) {
+    DvxplorerParser parser{{}};
+    Batch data;
+    const std::vector<std::byte> half(1);
+    parser.parse(half, data);
+    parser.resync();
+    parser.parse(bytes_of<std::uint16_t>({time(5), column(3), groups(2, 0), group_1(1, false)}),
+                 data);
+    EXPECT_THAT(data.events, ElementsAre(event(5, 3, 16, Polarity::on)));
+    parser.finish(data);
+    EXPECT_EQ(parser.damaged().total(), 0U);
+    parser.parse(half, data);
+    parser.finish(data);
+    EXPECT_EQ(parser.damaged()[DamageReason::truncated], 1U);
+}
+
+TEST(Dvxplorer, TheTimeIsNotKnownBeforeAWordTellsIt) {
+    DvxplorerParser parser{{}};
+    Batch data;
+    EXPECT_EQ(parser.clock(), std::nullopt);
+    parser.parse(bytes_of<std::uint16_t>({time(5)}), data);
+    EXPECT_EQ(parser.clock(), from_us(5));
+    parser.resync();
+    EXPECT_EQ(parser.clock(), std::nullopt);
+}
+
 TEST(Dvxplorer, OutsideTheSensorIsCounted) {
     const auto parsed = fx3({time(5), column(640), groups(0, 0), group_1(1, false), column(0),
                              groups(60, 0), group_1(3, false)});

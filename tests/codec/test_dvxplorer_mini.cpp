@@ -11,6 +11,7 @@ namespace {
 using testing::Each;
 using testing::ElementsAre;
 using testing::FloatEq;
+using testing::IsEmpty;
 
 // CX3: 32-bit words.
 constexpr std::uint32_t reference(std::uint32_t ms) {
@@ -34,6 +35,7 @@ TEST(DvxplorerMini, ReferenceColumnAndGroupWordsMakeEvents) {
                                                                 pair(1, 2, 1, 0x80, false, true)}));
     EXPECT_THAT(parsed.data.events,
                 ElementsAre(event(2030, 7, 8, Polarity::on), event(2030, 7, 31, Polarity::off)));
+    EXPECT_EQ(parsed.damaged.total(), 0U) << "a word of 0 is padding";
 }
 
 TEST(DvxplorerMini, GroupsHaveSixBitsAndTheSecondIsUpToThirtyOneBehind) {
@@ -51,6 +53,25 @@ TEST(DvxplorerMini, AReferenceALittleBeforeTheLastIsNoise) {
     EXPECT_THAT(parsed.data.events, ElementsAre(event(5030, 7, 0, Polarity::on)));
     EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
     EXPECT_EQ(parsed.damaged.total(), 1U);
+}
+
+TEST(DvxplorerMini, AReferenceLessThanHalfTheRangeBeforeTheLastIsNoiseToo) {
+    const auto parsed =
+        parse(DvxplorerMiniParser{{}},
+              bytes_of<std::uint32_t>({reference(4'000'000), reference(1'910'000), frame32(7, 0),
+                                       pair(0, 0, 1, 0, false, false)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(4'000'000'000, 7, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
+}
+
+/// Ten bits of microseconds reach beyond the next millisecond.
+TEST(DvxplorerMini, AFrameBeforeTheLastOneIsLeftOutThoughItsReferenceIsLater) {
+    const auto parsed = parse(
+        DvxplorerMiniParser{{}},
+        bytes_of<std::uint32_t>({reference(2), frame32(7, 1010), pair(0, 0, 1, 0, false, false),
+                                 reference(3), frame32(8, 5), pair(0, 0, 1, 0, false, false)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(3010, 7, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
 }
 
 /// A second of the host's clock passes, or nobody knows how much.
@@ -206,18 +227,40 @@ TEST(DvxplorerMini, PartsOfAnImuSampleThatAreNotThereAreZero) {
 }
 
 TEST(DvxplorerMini, OtherMessagesAreCountedAndWhatFollowsIsWhole) {
-    for (const std::size_t length : {0, 1, 15, 16, 17, 64}) {
-        auto bytes = bytes_of<std::uint32_t>({reference(1)});
-        std::vector<std::byte> text(length, std::byte{0xFF});
-        frame_mini_message(text);
-        bytes.insert(bytes.end(), text.begin(), text.end());
-        const auto after = bytes_of<std::uint32_t>({frame32(5, 1), pair(0, 0, 1, 0, false, false)});
-        bytes.insert(bytes.end(), after.begin(), after.end());
-        const auto parsed = parse(DvxplorerMiniParser{{}}, bytes);
-        EXPECT_THAT(parsed.data.events, ElementsAre(event(1001, 5, 0, Polarity::on))) << length;
-        EXPECT_EQ(parsed.damaged[DamageReason::unknown_word], 1U);
-        EXPECT_EQ(parsed.damaged.total(), 1U);
-    }
+    constexpr std::byte kImu{1}, kLetter{'A'}, kNoKind{0xFF};
+    for (const std::byte all : {kImu, kLetter, kNoKind})
+        for (const std::size_t length : {0, 1, 15, 16, 17, 64}) {
+            if (all == kImu && length == 16) continue;  // that is one
+            auto bytes = bytes_of<std::uint32_t>({reference(1)});
+            std::vector<std::byte> text(length, all);
+            frame_mini_message(text);
+            bytes.insert(bytes.end(), text.begin(), text.end());
+            const auto after =
+                bytes_of<std::uint32_t>({frame32(5, 1), pair(0, 0, 1, 0, false, false)});
+            bytes.insert(bytes.end(), after.begin(), after.end());
+            const auto parsed = parse(DvxplorerMiniParser{{}}, bytes);
+            EXPECT_THAT(parsed.data.events, ElementsAre(event(1001, 5, 0, Polarity::on))) << length;
+            EXPECT_THAT(parsed.data.imu, IsEmpty());
+            EXPECT_EQ(parsed.damaged[DamageReason::unknown_word], 1U);
+            EXPECT_EQ(parsed.damaged.total(), 1U);
+        }
+}
+
+TEST(DvxplorerMini, AnImuSampleBeforeTheFirstReferenceHasNoTimeAndIsLeftOut) {
+    auto bytes = mini_imu(0xE0);
+    const auto first = bytes_of<std::uint32_t>({reference(7)});
+    bytes.insert(bytes.end(), first.begin(), first.end());
+    const auto parsed = parse(DvxplorerMiniParser{{}}, bytes);
+    EXPECT_THAT(parsed.data.imu, IsEmpty());
+    EXPECT_EQ(parsed.damaged.total(), 0U);
+}
+
+TEST(DvxplorerMini, ARowBelowTheSensorIsOutside) {
+    const auto parsed = parse(
+        DvxplorerMiniParser{{}},
+        bytes_of<std::uint32_t>({reference(2), frame32(7, 0), pair(59, 1, 0x80, 1, false, false)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(2000, 7, 479, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::out_of_range], 1U);
 }
 
 TEST(DvxplorerMini, AMessageCutOffByALossOrTheEndIsNoSample) {

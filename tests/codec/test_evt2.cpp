@@ -96,6 +96,14 @@ TEST(Evt2, OtherWordsAreNoEvents) {
     EXPECT_EQ(parsed.damage.total(), 3U);
 }
 
+TEST(Evt2, WhatComesBeforeTheFirstTimeIsPassedOver) {
+    const Parsed parsed =
+        parse({cd(1, 2, 3, true), ext_trigger(1, 5, true), time_high(1), cd(2, 3, 4, true)});
+    EXPECT_EQ(parsed.data.events, (std::vector{event(kHigh + 2, 3, 4, true)}));
+    EXPECT_TRUE(parsed.data.triggers.empty());
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
 TEST(Evt2, SplitsCutsAndFlippedBitsAreBorne) {
     const Bytes bytes = to_stream(some_words(1, 800));
     EXPECT_EQ(parse_whole(kMake2, bytes).damage.total(), 0U);

@@ -85,6 +85,8 @@ TEST(Evt3, TheClockFollowsTimesAlsoWhereThereIsNoRow) {
     EXPECT_EQ(parser.clock(), from_us(5 * kHigh + 7));
     parser.parse(to_stream({addr_y(720), time_low(9)}), batch);
     EXPECT_EQ(parser.clock(), from_us(5 * kHigh + 9));
+    parser.parse(to_stream({addr_y(7), time_low(11)}), batch);
+    EXPECT_EQ(parser.clock(), from_us(5 * kHigh + 11)) << "and where there is one";
 }
 
 /// Words of all kinds, places at the borders of a sensor of 300 x 200 among them.

@@ -127,6 +127,30 @@ TEST(DavisReturn, WithoutASerialNumberItIsTakenBackAtItsPort) {
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
 }
 
+TEST(DavisReturn, OneThatIsThereButStallsAgainAndAgainIsOpenedAgain) {
+    UsbTestbed bed;
+    const auto model = camera_before(20'000);
+    bed.plug_in(model);
+    std::vector<std::string> warnings;
+    DavisOptions options = small_transfers(true);
+    options.warn = keep_in(warnings);
+    DavisCamera camera{options};
+    RawPacket packet;
+    ASSERT_EQ(camera.read(packet), ReadStatus::data);
+    bed.halt_data(1000);
+    while (warnings.empty()) camera.read(packet);
+    EXPECT_TRUE(packet.bytes.empty());
+    bed.look([&] { EXPECT_FALSE(model->is_streaming()) << "it was stopped"; });
+    for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("stalls again each time")));
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    bed.halt_data(0);
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
 /// All of them DAVIS346B of 346x260 px.
 TEST(DavisReturn, OneWithoutASerialNumberThatSpeaksOtherwiseIsNotTakenForIt) {
     using Change = std::pair<const char*, void (*)(DavisSensor&)>;

@@ -48,6 +48,7 @@ TEST(DvxplorerFaults, SaysWhatToDoWhenItCannotStart) {
                 HasSubstr("FPGA logic version 18 patch 1, expected 18 patch 2"));
     EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
     EXPECT_THAT(with([](auto& s) { s.sensor.width = 0; }), HasSubstr("a side of 0 px"));
+    EXPECT_THAT(with([](auto& s) { s.sensor.width = 1025; }), HasSubstr("a side of 1025 px"));
 }
 
 TEST(DvxplorerFaults, ASettingThatTheCameraDoesNotTakeIsNamed) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace eventide::test::dvxplorer {
 namespace {
 
@@ -56,6 +58,17 @@ TEST(DvxplorerSession, StartsAndStopsAsTheRedBoardExpects) {
     expected.insert(expected.end(), idle.begin(), idle.end());
     expected.push_back({kRunChip, 0});  // libcaer's dvXplorerClose: the chip back into reset
     EXPECT_EQ(session_of({}), expected);
+}
+
+/// A Mini does this itself.
+TEST(DvxplorerSession, TheRedBoardsChipIsPoweredAndSetBeforeAnythingElse) {
+    std::vector<davis::Write> expected{{davis::kRunChip, 1}};
+    for (const davis::Write& write : chip_writes()) expected.push_back(write);
+    PluggedIn red{{}, 1};
+    const DvxplorerCamera camera{at_once()};
+    const auto& writes = red.model->writes();
+    ASSERT_GE(writes.size(), expected.size());
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), writes.begin()));
 }
 
 TEST(DvxplorerSession, StartsAndStopsAsAMiniExpects) {

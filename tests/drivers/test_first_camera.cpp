@@ -126,5 +126,29 @@ TEST_P(FirstCamera, OfAnotherKindIsFoundInTheSameWay) {
     EXPECT_EQ(Dvs128Camera{options}.info().name, "DVS128");
 }
 
+TEST_P(FirstCamera, OneWhoseSerialNumberAnotherHasTooIsTakenBackAtItsPortAlone) {
+    plug_in(davis("00000042"), davis("00000042"));
+    DavisOptions named = any();
+    std::tie(named.bus, named.address) = std::pair{1, 5 + GetParam()};
+    named.reconnect = true;
+    DavisCamera camera{named};
+    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("2 DAVIS say that their serial number is "
+                                                 "'00000042'")));
+    unplug_while_sending(camera, one());
+    RawPacket packet;
+    for (int look = 0; look < 5; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U) << "the other is not taken for it";
+    one().plug_in(davis("00000042"), {.port = 2 + GetParam(), .address = 9});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+}
+
+TEST_P(FirstCamera, CamerasThatSayTheSameSerialNumberAreListedByTheirPlaces) {
+    plug_in(davis("00000042"), davis("00000042"));
+    std::vector<std::string> sources;
+    for (const CameraDescription& camera : list_davis_cameras()) sources.push_back(camera.source);
+    EXPECT_THAT(sources, testing::UnorderedElementsAre("davis:1:5", "davis:1:6"));
+}
+
 }  // namespace
 }  // namespace eventide::test

@@ -183,6 +183,8 @@ TEST(V4l2Camera, ASizeThatIsStatedCountsAndOneThatNoSensorHasIsRefused) {
     V4l2Testbed bed{settings};
     EXPECT_THAT(failure_of([] { open(); }),
                 HasSubstr("says its sensor is 5000x320 px: state size"));
+    bed.change_format(kEvt3, 320, 0);
+    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("says its sensor is 320x0 px: state size"));
     V4l2Settings wanted;
     wanted.subdevice = "/dev/v4l-subdev0";
     wanted.width = 640;
@@ -247,7 +249,8 @@ TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     V4l2NodeSettings settings = sensor();
     settings.controls = {{"bias_fo", {-10, 10, 0}},
                          {"bias_refr", {-10, 10, 3, false, true}},
-                         {"serial", {0, 100, 7, true}}};
+                         {"serial", {0, 100, 7, true}},
+                         {"unused", {.maximum = 9, .disabled = true}}};
     V4l2Testbed bed{settings};
     const auto with = [](const std::string& name, int value) {
         V4l2Settings wanted;
@@ -261,7 +264,29 @@ TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     EXPECT_THAT(with("bias_refr", 5), HasSubstr("set to 5, reads back as 3"));
     EXPECT_EQ(with("bias_refr", 3), "nothing was thrown");
     EXPECT_THAT(with("bias_hpf", 1), HasSubstr("no control 'bias_hpf'"));
-    EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written"));
+    EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written: expected its value, 7, found 1"));
+    EXPECT_THAT(with("unused", 1), HasSubstr("cannot be written: expected it left out, found 1"));
+}
+
+/// v4l2-ctl lists "Vertical Flip" as vertical_flip.
+TEST(V4l2Camera, ControlsMayBeNamedAsV4l2CtlListsThem) {
+    V4l2NodeSettings settings = sensor();
+    settings.controls = {{"Vertical Flip", {0, 1, 0}}, {"(Gain) analogue, x2", {0, 10, 0}}};
+    V4l2Testbed bed{settings};
+    V4l2Settings wanted;
+    wanted.controls = {{"vertical_flip", 1}, {"gain_analogue_x2", 7}};
+    open(wanted);
+    EXPECT_EQ(bed.control("Vertical Flip").value, 1);
+    EXPECT_EQ(bed.control("(Gain) analogue, x2").value, 7);
+    wanted.controls = {{"Vertical Flip", 0}};
+    open(wanted);
+    EXPECT_EQ(bed.control("Vertical Flip").value, 0);
+}
+
+TEST(V4l2Camera, WithControlsItSaysAsWellWhyItCannotBeOpened) {
+    V4l2Settings wanted;
+    wanted.controls = {{"bias_fo", 1}};
+    EXPECT_THAT(failure_of([&] { open(wanted); }), HasSubstr("is the driver loaded"));
 }
 
 TEST(V4l2Camera, ASubdeviceThatIsNotThereIsNamed) {

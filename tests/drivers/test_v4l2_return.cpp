@@ -33,6 +33,7 @@ TEST(V4l2Camera, LostBuffersMarkAGap) {
                                        true}));  // after the loss, after the damaged buffer
     EXPECT_EQ(camera.counters()[CameraCount::lost_transfers], 3U);
     EXPECT_EQ(camera.counters()[CameraCount::damaged_transfers], 1U);
+    EXPECT_EQ(camera.counters()[CameraCount::transfers], 4U);
 }
 
 TEST(V4l2Camera, ADriverThatCountsAnewIsAGapButNoLoss) {
@@ -106,13 +107,53 @@ TEST(V4l2Camera, ASensorThatDoesNotStartLeavesNoMemoryMapped) {
     EXPECT_EQ(mapped_buffers(), 0U);
 }
 
+TEST(V4l2Camera, WhateverFailsWhileItIsOpenedAgainItComesBackAndLeavesNothingBehind) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open({}, true);
+    RawPacket packet;
+    std::size_t open_files = 0;
+    for (const char* request :
+         {"QUERYCAP", "G_FMT", "REQBUFS", "QUERYBUF", "QBUF", "STREAMON", "DQBUF"}) {
+        bed.fail_next("DQBUF", ENODEV);
+        EXPECT_EQ(camera.read(packet), ReadStatus::timeout);  // and opens it
+        bed.fail_next("DQBUF", ENODEV);
+        bed.fail_next(request, ENODEV, 2);
+        for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.gap_before) << request;
+        EXPECT_TRUE(packet.reopened) << request;
+        const std::size_t files = test::holdings().files;
+        if (open_files == 0) open_files = files;
+        EXPECT_EQ(files, open_files) << request;
+    }
+}
+
+TEST(V4l2Camera, ANodeThatVanishesIsWaitedFor) {
+    V4l2Testbed bed{sensor()};
+    std::vector<std::string> warnings;
+    auto camera = open({}, true, test::keep_in(warnings));
+    RawPacket packet;
+    bed.hide_node(true);
+    bed.fail_next("DQBUF", ENODEV);
+    for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("cannot be opened: No such file")));
+    bed.hide_node(false);
+    bed.give({bytes_of({time_high(0)})});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
 TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     V4l2Testbed bed{sensor()};
     RawPacket packet;
     {
         auto camera = open();
         bed.fail_with(EIO);
-        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("--reconnect"));
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                    HasSubstr("/dev/video0 stopped (Input/output error); --reconnect"));
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("stopped")) << "once more";
         bed.fail_with(0);
     }
     auto camera = open({}, true);
@@ -135,7 +176,8 @@ TEST(V4l2Camera, ADriverThatGivesABufferThereIsNotIsLostLikeAnyOther) {
     auto camera = open();
     bed.give({.bytes = bytes_of({time_high(0)}), .says_index = 4});
     RawPacket packet;
-    EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("stopped; --reconnect"));
+    EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                HasSubstr("stopped (it gave a buffer there is not); --reconnect"));
 }
 
 TEST(V4l2Camera, ASensorThatStopsBeforeItGivesDataHasNotComeBack) {
@@ -164,7 +206,7 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
         bed.fail_next("QBUF", ENODEV);
         if (!reconnect) {
             EXPECT_THAT(failure_of([&] { camera.read(packet); }),
-                        HasSubstr("stopped; --reconnect"));
+                        HasSubstr("stopped (No such device); --reconnect"));
             continue;
         }
         EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
@@ -187,11 +229,15 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     };
     bed.fail_next("DQBUF", EIO);
     come_back(kEvt21, 320, 320);
-    come_back(kEvt3, 1280, 720);
+    come_back(kEvt3, 1280, 320);
+    come_back(kEvt3, 320, 240);
     EXPECT_THAT(
         warnings,
-        testing::ElementsAre(HasSubstr("PSE2 of 320x320 px, expected PSE3 of 320x320 px as before"),
-                             HasSubstr("PSE3 of 1280x720 px, expected PSE3 of 320x320 px")));
+        testing::ElementsAre(
+            HasSubstr("'eventide testbed' with PSE2 of 320x320 px, expected 'eventide testbed' "
+                      "with PSE3 of 320x320 px as before"),
+            HasSubstr("PSE3 of 1280x320 px, expected 'eventide testbed' with PSE3 of 320x320"),
+            HasSubstr("PSE3 of 320x240 px")));
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     EXPECT_EQ(camera.info().width, 320);
     come_back(kEvt3, 320, 320);
@@ -199,6 +245,34 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
+/// Where the user says that a format means events, the format alone does not tell a camera.
+TEST(V4l2Camera, AnotherDeviceAtItsNodeIsNotTakenForIt) {
+    V4l2Testbed bed{sensor(V4L2_PIX_FMT_GREY)};
+    V4l2Settings stated;
+    stated.encoding = EvtEncoding::evt3;
+    std::vector<std::string> warnings;
+    auto camera = open(stated, true, test::keep_in(warnings));
+    bed.fail_next("DQBUF", ENODEV);
+    const auto look = [&] {
+        RawPacket packet;
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    bed.change_card("a webcam");
+    look();
+    bed.change_card("eventide testbed");
+    bed.change_format(V4L2_PIX_FMT_YUYV, 320, 320);
+    look();
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("'a webcam' with GREY of 320x320 px"),
+                                               HasSubstr("with YUYV of 320x320 px, expected "
+                                                         "'eventide testbed' with GREY")));
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    bed.change_format(V4L2_PIX_FMT_GREY, 320, 320);
+    bed.give({bytes_of({time_high(0)})});
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
 }
 
 TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {

@@ -90,6 +90,7 @@ TEST_F(BiasFile, WhatDoesNotFitIsNamedWithItsLine) {
     EXPECT_THAT(failure("5 5 % bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE % NAME"));
     EXPECT_THAT(failure("5 % bias_fo bias_hpf\n"), HasSubstr("sensor.bias:1: expected VALUE"));
     EXPECT_THAT(failure("99999999999 % bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE"));
+    EXPECT_THAT(failure("2147483648 % bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE"));
     EXPECT_THAT(failure("% header\n"), HasSubstr("found none"));
     EXPECT_THAT(failure_of([] { load_v4l2_settings("/none/x.bias"); }), HasSubstr("/none/x.bias"));
 }
@@ -171,6 +172,20 @@ TEST(V4l2Settings, ShippedFileReadsAndUnknownKeysAreRefused) {
     std::ofstream{file} << "size = [1280, 720]\nencodng = \"evt3\"\n";
     EXPECT_THAT(failure_of([&] { load_v4l2_settings(file); }),
                 HasSubstr("v4l2.toml:2: unknown key 'encodng'; did you mean encoding?"));
+}
+
+TEST(V4l2Settings, WhatIsOutOfRangeIsRefused) {
+    const auto refusal = [](const std::string& line) {
+        const auto file = std::filesystem::path{testing::TempDir()} / "v4l2.toml";
+        std::ofstream{file} << line << "\n";
+        return failure_of([&] { load_v4l2_settings(file); });
+    };
+    EXPECT_EQ(refusal("buffers = 2"), "nothing was thrown");
+    EXPECT_THAT(refusal("buffers = 1"), HasSubstr("from 2 to 256"));
+    EXPECT_THAT(refusal("buffers = 257"), HasSubstr("from 2 to 256"));
+    EXPECT_THAT(refusal("size = [640]"), HasSubstr("expected [width, height]"));
+    EXPECT_THAT(refusal("size = [640, 480, 3]"), HasSubstr("expected [width, height]"));
+    EXPECT_THAT(refusal("size = [640, 0]"), HasSubstr("found 0"));
 }
 
 }  // namespace

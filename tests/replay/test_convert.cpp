@@ -197,7 +197,10 @@ TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
     const std::string source = folder.path("a.aedat4");
     std::size_t events = 0;
     {
-        StreamHeader header{.format = "aedat4", .width = 240, .height = 180};
+        StreamHeader header;
+        header.format = "aedat4";
+        header.width = 240;
+        header.height = 180;
         RecordingFile file{source, {}, *find_format("aedat4"), header};
         for (const std::int64_t begin : {5'000'000, 1'000'000}) {
             Batch batch;
@@ -224,7 +227,10 @@ TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
 
 /// Ten events 10 ms apart from each of `begins` on, in ms, each time of a clock that began anew.
 std::string write_clocks(const std::string& path, const std::vector<int>& begins_ms) {
-    StreamHeader header{.format = "aedat4", .width = 240, .height = 180};
+    StreamHeader header;
+    header.format = "aedat4";
+    header.width = 240;
+    header.height = 180;
     RecordingFile file{path, OutputOptions{.overwrite = true}, *find_format("aedat4"), header};
     for (const int begin : begins_ms) {
         Batch batch;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace eventide::test {
@@ -80,6 +81,17 @@ TEST_F(Slurm, SegmentsAreJoinedToWhatOneRunWrites) {
     EXPECT_TRUE(joined == one) << "every frame, sigma and time, bit for bit";
     EXPECT_THAT(script("merge.sh", {"out"}).error, HasSubstr("done before"));
     EXPECT_FALSE(fs::exists(temp_ / "out/long.1.work"));
+}
+
+TEST_F(Slurm, ARecordingWhoseClockBeganAnewHasNoSegments) {
+    simulate("once.aedat4");
+    ASSERT_EQ(eventide({"convert", "once.aedat4", "once.raw"}).exit_code, 0);
+    std::ofstream{temp_ / "twice.raw", std::ios::binary} << read_text(temp_ / "once.raw")
+                                                         << read_text(temp_ / "once.raw");
+    const Result refused = script("submit.sh", plan({"--segment", "1", "out", "twice.raw"}));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.error, HasSubstr("the clock of twice.raw began anew"));
+    EXPECT_EQ(script("submit.sh", plan({"out", "twice.raw"})).exit_code, 0);
 }
 
 TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {

@@ -2,7 +2,6 @@
 #include "src/codec/aedat/aedat1.h"
 
 #include "src/codec/aedat/aedat_header.h"
-#include "src/core/byte_order.h"
 
 #include <algorithm>
 
@@ -52,45 +51,6 @@ StreamHeader read_aedat1_header(std::span<const std::byte> first_bytes) {
     header.sensor_name = "DVS128";
     header.data_offset = read_aedat_lines(first_bytes).end;
     return header;
-}
-
-void Aedat1Parser::push(const std::byte* record, Batch& into) {
-    const auto take = [&](const AedatRecord& taken, std::int64_t t) {
-        events_.take(taken, t, into, damage_);
-    };
-    const auto reset = [&](std::int64_t t) {
-        into.triggers.push_back({from_us(t), Trigger::Kind::timestamp_reset, 0});
-    };
-    timeline_.push(
-        {load_big<std::uint16_t>(record), std::int32_t(load_big<std::uint32_t>(record + 2))},
-        damage_, take, reset);
-}
-
-void Aedat1Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    records_.feed(
-        bytes, [&](const std::byte* record) { push(record, into); }, [&] { end_of_file(into); });
-}
-
-void Aedat1Parser::finish(Batch& into) {
-    records_.finish([&](const std::byte* record) { push(record, into); },
-                    [&] { end_of_file(into); });
-}
-
-void Aedat1Parser::end_of_file(Batch& into) {
-    timeline_.join(
-        [&](const AedatRecord& record, std::int64_t t) { events_.take(record, t, into, damage_); });
-    if (records_.is_half_read()) damage_.count(DamageReason::truncated);
-}
-
-void Aedat1Parser::resync() {
-    records_.drop();
-    timeline_.resync();
-    events_.resync();
-}
-
-std::optional<SensorTime> Aedat1Parser::clock() const {
-    const auto newest = timeline_.newest();
-    return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 
 }  // namespace eventide

@@ -2,9 +2,7 @@
 // D.1).
 #pragma once
 
-#include "src/codec/aedat/aedat_records.h"
-#include "src/codec/aedat/aedat_timeline.h"
-#include "src/codec/parser.h"
+#include "src/codec/aedat/aedat_parser.h"
 #include "src/codec/stream.h"
 
 namespace eventide {
@@ -25,6 +23,7 @@ public:
     Dvs128Events(bool one_is_on, int width, int height)
         : one_is_on_(one_is_on), width_(width), height_(height) {}
     void take(const AedatRecord& record, std::int64_t t_us, Batch& into, Damage& damage);
+    void end_of_file(Batch&, Damage&) {}
     void resync() { last_event_us_.reset(); }
 
 private:
@@ -37,26 +36,11 @@ private:
 bool looks_like_aedat1(std::span<const std::byte> first_bytes);
 StreamHeader read_aedat1_header(std::span<const std::byte> first_bytes);
 
-class Aedat1Parser final : public Parser {
+class Aedat1Parser final : public AedatParser<std::uint16_t, Dvs128Events> {
 public:
     /// `one_is_on`: what bit 0 of the address means (see OpenOptions).
     explicit Aedat1Parser(bool one_is_on = false, int width = 128, int height = 128)
-        : events_(one_is_on, width, height) {}
-
-    void parse(std::span<const std::byte> bytes, Batch& into) override;
-    void finish(Batch& into) override;
-    void resync() override;
-    std::optional<SensorTime> clock() const override;
-    const Damage& damaged() const override { return damage_; }
-
-private:
-    void push(const std::byte* record, Batch& into);
-    void end_of_file(Batch& into);
-
-    AedatRecords<6> records_;
-    AedatTimeline timeline_;
-    Dvs128Events events_;
-    Damage damage_;
+        : AedatParser(Dvs128Events(one_is_on, width, height)) {}
 };
 
 }  // namespace eventide

@@ -81,8 +81,8 @@ Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stat
     return header;
 }
 
-Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on,
-                           int shown_width, int shown_height)
+Aedat2Content::Aedat2Content(Aedat2Sensor sensor, int width, int height, bool one_is_on,
+                             int shown_width, int shown_height)
     : sensor_(sensor),
       width_(std::uint32_t(width)),
       height_(std::uint32_t(height)),
@@ -93,7 +93,8 @@ Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_
              sensor == Aedat2Sensor::dvs128 ? 0 : int(shown_height_),
              sensor == Aedat2Sensor::davis240) {}
 
-void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& into) {
+void Aedat2Content::add_event(std::uint32_t address, std::int64_t t_us, Batch& into,
+                              Damage& damage) {
     // The chip's origin is at the lower left, and X is stored mirrored. What lies beyond the chip
     // becomes huge.
     const std::uint32_t x = width_ - 1 - (address >> 12 & 0x3FF);
@@ -101,9 +102,9 @@ void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& in
     if ((address >> 10 & 1) != 0) {
         into.triggers.push_back({from_us(t_us), Trigger::Kind::pulse, 0});
     } else if (!is_shown(x, y)) {
-        damage_.count(DamageReason::out_of_range);
+        damage.count(DamageReason::out_of_range);
     } else if (last_event_us_ && t_us < *last_event_us_) {
-        damage_.count(DamageReason::time_backwards);
+        damage.count(DamageReason::time_backwards);
     } else {
         last_event_us_ = t_us;
         into.events.push_back(
@@ -111,75 +112,46 @@ void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& in
     }
 }
 
-void Aedat2Parser::take_davis(std::uint32_t address, std::int64_t t_us, Batch& into) {
+void Aedat2Content::take_davis(std::uint32_t address, std::int64_t t_us, Batch& into,
+                               Damage& damage) {
     if ((address >> 31) == 0) {
-        add_event(address, t_us, into);
+        add_event(address, t_us, into, damage);
         return;
     }
     const unsigned kind = (address >> 10) & 3;
     const SensorTime t = from_us(t_us);
     if (kind == 3) {
-        imu_.word((address >> 28) & 7, std::int16_t((address >> 12) & 0xFFFF), t, into, damage_);
+        imu_.word((address >> 28) & 7, std::int16_t((address >> 12) & 0xFFFF), t, into, damage);
         return;
     }
     const std::uint32_t x = address >> 12 & 0x3FF;
     const std::uint32_t y = height_ - 1 - (address >> 22 & 0x1FF);
     if (kind == 2)
-        damage_.count(DamageReason::unknown_word);
+        damage.count(DamageReason::unknown_word);
     else if (!is_shown(x, y))
-        damage_.count(DamageReason::out_of_range);
+        damage.count(DamageReason::out_of_range);
     else
-        frame_.read(kind == 1, int(x), int(y), std::uint16_t(address & 0x3FF), t, into, damage_);
+        frame_.read(kind == 1, int(x), int(y), std::uint16_t(address & 0x3FF), t, into, damage);
 }
 
-void Aedat2Parser::take(const AedatRecord& record, std::int64_t t_us, Batch& into) {
+void Aedat2Content::take(const AedatRecord& record, std::int64_t t_us, Batch& into,
+                         Damage& damage) {
     if (sensor_ == Aedat2Sensor::dvs128)
-        dvs128_.take(record, t_us, into, damage_);
+        dvs128_.take(record, t_us, into, damage);
     else
-        take_davis(record.address, t_us, into);
+        take_davis(record.address, t_us, into, damage);
 }
 
-void Aedat2Parser::push(const std::byte* record, Batch& into) {
-    const auto take_record = [&](const AedatRecord& taken, std::int64_t t) {
-        take(taken, t, into);
-    };
-    const auto reset = [&](std::int64_t t) {
-        into.triggers.push_back({from_us(t), Trigger::Kind::timestamp_reset, 0});
-    };
-    timeline_.push(
-        {load_big<std::uint32_t>(record), std::int32_t(load_big<std::uint32_t>(record + 4))},
-        damage_, take_record, reset);
+void Aedat2Content::end_of_file(Batch& into, Damage& damage) {
+    frame_.finish(into, damage);
+    imu_.finish(damage);
 }
 
-void Aedat2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    records_.feed(
-        bytes, [&](const std::byte* record) { push(record, into); }, [&] { end_of_file(into); });
-}
-
-void Aedat2Parser::finish(Batch& into) {
-    records_.finish([&](const std::byte* record) { push(record, into); },
-                    [&] { end_of_file(into); });
-}
-
-void Aedat2Parser::end_of_file(Batch& into) {
-    timeline_.join([&](const AedatRecord& record, std::int64_t t) { take(record, t, into); });
-    if (records_.is_half_read()) damage_.count(DamageReason::truncated);
-    frame_.finish(into, damage_);
-    imu_.finish(damage_);
-}
-
-void Aedat2Parser::resync() {
-    records_.drop();
-    timeline_.resync();
+void Aedat2Content::resync() {
     dvs128_.resync();
     frame_.drop();
     imu_.drop();
     last_event_us_.reset();
-}
-
-std::optional<SensorTime> Aedat2Parser::clock() const {
-    const auto newest = timeline_.newest();
-    return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 
 }  // namespace eventide

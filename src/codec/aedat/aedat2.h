@@ -5,9 +5,7 @@
 #include "src/codec/aedat/aedat1.h"
 #include "src/codec/aedat/aedat2_frame.h"
 #include "src/codec/aedat/aedat2_imu.h"
-#include "src/codec/aedat/aedat_records.h"
-#include "src/codec/aedat/aedat_timeline.h"
-#include "src/codec/parser.h"
+#include "src/codec/aedat/aedat_parser.h"
 #include "src/codec/stream.h"
 
 namespace eventide {
@@ -25,25 +23,20 @@ struct Aedat2Header {
 Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stated_width = 0,
                                 int stated_height = 0);
 
-class Aedat2Parser final : public Parser {
+/// The data of records, whatever the sensor.
+class Aedat2Content {
 public:
-    /// `width` x `height` px of the chip. `one_is_on`: what bit 0 of a DVS128's address means (see
-    /// OpenOptions). `shown`: of a sensor stated as smaller, its upper left part; 0 for all.
-    Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on = false,
-                 int shown_width = 0, int shown_height = 0);
+    /// As Aedat2Parser.
+    Aedat2Content(Aedat2Sensor sensor, int width, int height, bool one_is_on, int shown_width,
+                  int shown_height);
 
-    void parse(std::span<const std::byte> bytes, Batch& into) override;
-    void finish(Batch& into) override;
-    void resync() override;
-    std::optional<SensorTime> clock() const override;
-    const Damage& damaged() const override { return damage_; }
+    void take(const AedatRecord& record, std::int64_t t_us, Batch& into, Damage& damage);
+    void end_of_file(Batch& into, Damage& damage);
+    void resync();
 
 private:
-    void push(const std::byte* record, Batch& into);
-    void end_of_file(Batch& into);
-    void take(const AedatRecord& record, std::int64_t t_us, Batch& into);
-    void take_davis(std::uint32_t address, std::int64_t t_us, Batch& into);
-    void add_event(std::uint32_t address, std::int64_t t_us, Batch& into);
+    void take_davis(std::uint32_t address, std::int64_t t_us, Batch& into, Damage& damage);
+    void add_event(std::uint32_t address, std::int64_t t_us, Batch& into, Damage& damage);
     bool is_shown(std::uint32_t x, std::uint32_t y) const {
         return x < shown_width_ && y < shown_height_;
     }
@@ -51,13 +44,19 @@ private:
     Aedat2Sensor sensor_;
     std::uint32_t width_, height_;  ///< px, of the chip
     std::uint32_t shown_width_, shown_height_;
-    AedatRecords<8> records_;
-    AedatTimeline timeline_;
     Dvs128Events dvs128_;
     Aedat2FrameAssembler frame_;
     Aedat2ImuAssembler imu_;
     std::optional<std::int64_t> last_event_us_;
-    Damage damage_;
+};
+
+class Aedat2Parser final : public AedatParser<std::uint32_t, Aedat2Content> {
+public:
+    /// `width` x `height` px of the chip. `one_is_on`: what bit 0 of a DVS128's address means (see
+    /// OpenOptions). `shown`: of a sensor stated as smaller, its upper left part; 0 for all.
+    Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on = false,
+                 int shown_width = 0, int shown_height = 0)
+        : AedatParser(Aedat2Content(sensor, width, height, one_is_on, shown_width, shown_height)) {}
 };
 
 }  // namespace eventide

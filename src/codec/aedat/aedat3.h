@@ -2,8 +2,8 @@
 // little-endian (docs/protocols.md D.2).
 #pragma once
 
+#include "src/codec/aedat/aedat3_content.h"
 #include "src/codec/aedat/aedat3_packet.h"
-#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/stream.h"
 
@@ -43,7 +43,7 @@ public:
     void finish(Batch& into) override;
     void resync() override;
     std::optional<SensorTime> clock() const override;
-    const Damage& damaged() const override { return damage_; }
+    const Damage& damaged() const override { return content_.damage(); }
 
 private:
     enum class State { header, searching, records, passing_over };
@@ -53,31 +53,15 @@ private:
     void begin_packet(const Aedat3Packet& packet);
     std::span<const std::byte> read_records(std::span<const std::byte> bytes, Batch& into);
     std::span<const std::byte> pass_over(std::span<const std::byte> bytes);
-    void take(std::span<const std::byte> record, Batch& into);
-    void take_many_events(std::span<const std::byte> records, Batch& into);
-    const std::byte* take_plain_events(const std::byte* record, const std::byte* end, Batch& into);
-    void take_event(const std::byte* record, Batch& into);
-    void take_special(const std::byte* record, Batch& into);
-    void take_frame(std::span<const std::byte> record, Batch& into);
-    bool may_begin_anew() const { return was_reset_ || is_joined_; }
-    void begin_anew_after_reset(std::int64_t t_us, Batch& into);
-    void move_clock(std::int64_t t_us);
 
-    bool lower_left_;
-    std::uint64_t rows_;  ///< px, of the sensor: lower_left_ counts from its last
     std::optional<int> source_;
     std::vector<Aedat3Source> others_;
-    EventValidator validator_;
-    Damage damage_;
+    Aedat3Content content_;
 
     State state_ = State::header;
     std::vector<std::byte> unit_;  ///< the beginning of a header or record whose end has not come
     Aedat3Packet packet_;          ///< whose records are being read
     std::uint64_t left_ = 0;       ///< records of it to come; in passing_over: bytes
-    std::int64_t base_us_ = 0;     ///< what its overflow adds
-    bool was_reset_ = false;       ///< since the last packet of events
-    bool is_joined_ = false;       ///< another file begins, since the last packet of events
-    std::optional<std::int64_t> newest_us_;
 };
 
 /// Writes AEDAT 3.1: packets of at most kPacketRecords, colour frames as RGB, IMU samples with a

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace eventide {
 
@@ -21,15 +22,15 @@ struct AedatRecord {
 ///   that one record is damage (a flipped bit would otherwise put all that follows in the past);
 /// - a step back is jitter or damage, and the user's business, until kResetRecords records in a row
 ///   go on from there: then the clock was reset or files were joined, and time goes on from where
-///   it was.
+///   it was, with the first of them.
 class AedatTimeline {
 public:
     static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
     static constexpr std::int64_t kLongestSilence = 60'000'000;  // us, after a reset
     static constexpr std::int64_t kJitter = 10'000;              // us, no reset is as small
-    static constexpr int kResetRecords = 32;
+    static constexpr std::size_t kResetRecords = 32;
 
-    /// Calls take(record, t) with the time in us for this record, and the one held back before it;
+    /// Calls take(record, t) with the time in us for this record, and those held back before it;
     /// reset(t) before a record after a reset. t may lie before an earlier one.
     template <typename Take, typename Reset>
     void push(const AedatRecord& record, Damage& damage, Take&& take, Reset&& reset) {
@@ -37,10 +38,10 @@ public:
             begin_anew(record.stamp, reset);
         if ((held_ || step_to(record.stamp) > kLongestStep) && !settle(record, damage, take))
             return;
-        const std::int64_t step = step_to(record.stamp);
-        if (started_ && step < 0 && goes_on_in_the_past(record.stamp, step))
-            begin_anew(record.stamp, reset);
-        place(record, take);
+        if (started_ && step_to(record.stamp) < -kJitter)
+            keep(record, take, reset);
+        else
+            place(record, take);
     }
 
     /// The next record is of another file, whose clock may have begun anew: then time goes on from
@@ -51,11 +52,12 @@ public:
         joined_ = true;
     }
 
-    /// The stream ended: nothing can contradict the record held back.
+    /// The stream ended: nothing can contradict the record held back, nor confirm a reset.
     template <typename Take>
     void finish(Take&& take) {
         if (held_) place(*held_, take);
         held_.reset();
+        let_past_go(take);
     }
 
     void resync() { *this = {}; }
@@ -98,13 +100,24 @@ private:
         reset(last_);
     }
 
-    bool goes_on_in_the_past(std::int32_t stamp, std::int64_t step) {
-        if (step >= -kJitter) return false;
-        const bool goes_on =
-            stamp >= past_stamp_ && std::int64_t(stamp) - past_stamp_ <= kLongestSilence;
-        steps_back_ = goes_on ? steps_back_ + 1 : 1;
-        past_stamp_ = stamp;
-        return steps_back_ > kResetRecords;
+    /// A record far in the past, until it is known whether the clock was reset.
+    template <typename Take, typename Reset>
+    void keep(const AedatRecord& record, Take& take, Reset& reset) {
+        const auto goes_on_from = [&](std::int64_t stamp) {
+            return record.stamp >= stamp - kJitter && record.stamp - stamp <= kLongestSilence;
+        };
+        if (!past_.empty() && !goes_on_from(past_.back().stamp)) let_past_go(take);
+        past_.push_back(record);
+        if (past_.size() <= kResetRecords) return;
+        begin_anew(past_.front().stamp, reset);
+        for (const AedatRecord& kept : std::exchange(past_, {})) place(kept, take);
+    }
+
+    /// There was no reset.
+    template <typename Take>
+    void let_past_go(Take& take) {
+        for (const AedatRecord& kept : past_) take(kept, last_ + step_to(kept.stamp));
+        past_.clear();
     }
 
     template <typename Take>
@@ -114,20 +127,19 @@ private:
             last_ = last_stamp_ = record.stamp;
         }
         const std::int64_t step = step_to(record.stamp);
+        if (step >= 0) let_past_go(take);
         take(record, last_ + step);
         if (step < 0) return;
         last_ += step;
         last_stamp_ = record.stamp;
-        steps_back_ = 0;
     }
 
     bool started_ = false;
     std::int64_t last_ = 0;        ///< us, the newest
     std::int32_t last_stamp_ = 0;  ///< as it stood in the record
     std::optional<AedatRecord> held_;
-    int steps_back_ = 0;
-    std::int32_t past_stamp_ = 0;
-    bool joined_ = false;  ///< since the record before
+    std::vector<AedatRecord> past_;  ///< at most kResetRecords, in a row
+    bool joined_ = false;            ///< since the record before
 };
 
 }  // namespace eventide

@@ -59,14 +59,12 @@ void DvxplorerMiniParser::reference(std::int64_t us) {
     reference_ = us;
     time_ = std::max(time_, base_ + us);
     told_at_ = arrived_;
-    begun_ = true;
 }
 
 /// The first reference since the start or a loss. Whole wraps may be missing, or all that was
 /// before.
 void DvxplorerMiniParser::settle(std::int64_t us) {
     constexpr std::int64_t kBeganAnewUs = 2'000'000;
-    if (!begun_) return;
     const bool host_knows = arrived_ && told_at_;
     const std::int64_t expected =
         host_knows
@@ -75,7 +73,7 @@ void DvxplorerMiniParser::settle(std::int64_t us) {
     const double wraps = std::round(double(expected - base_ - us) / double(kReferenceWrapUs));
     base_ += std::max(std::int64_t{0}, std::int64_t(wraps)) * kReferenceWrapUs;
     const bool far_off = host_knows && std::abs(base_ + us - expected) > kBeganAnewUs;
-    if (far_off || base_ + us < time_) base_ = std::max(time_, expected) - us;
+    if (far_off || base_ + us < time_) base_ = expected - us;
 }
 
 /// Words were lost, a reference perhaps among them, and without it what follows would be too early.

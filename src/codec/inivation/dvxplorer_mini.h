@@ -57,7 +57,6 @@ private:
     std::int64_t reference_ = -1;  ///< us since base_; -1: not known since the start or a loss
     std::int64_t time_ = 0;        ///< us
     std::optional<HostTime> arrived_, told_at_;  ///< of these words; of those that told time_
-    bool begun_ = false;
     int column_ = -1;  ///< -1: no frame has begun since the start or a loss
     std::array<std::byte, 64> message_{};
     std::size_t message_bytes_ = 0, message_read_ = 0;  ///< equal: no message has begun

@@ -72,7 +72,12 @@ DatParser::DatParser(DatHeader::Record record, int width, int height)
                  side(height, record == DatHeader::Record::events_v1 ? 256 : 16384)) {}
 
 void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    words_.feed(bytes, [&](std::span<const std::byte> records) { take(records, into); });
+    words_.feed(
+        bytes, [&](auto records) { take(records, into); },
+        [&](auto) {
+            end_file(into);
+            begin_file();
+        });
 }
 
 /// No time lies before 0: there the stamp itself is meant, and the one before it lied.
@@ -105,7 +110,10 @@ void DatParser::take(std::span<const std::byte> records, Batch& into) {
         }
         block_.pass(n, into);
         n = 0;
+        seam_.see(t, into);
+        const std::size_t before = into.events.size();
         validator_.add(t, at.x, at.y, at.on, into, damage_);
+        if (into.events.size() > before) seam_.end();
     }
     block_.pass(n, into);
 }
@@ -117,6 +125,7 @@ void DatParser::take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& int
                                  : held_trigger_             ? to_us(held_trigger_->t)
                                                              : stamp;
     const std::int64_t t = unwrapped(stamp, near_us);
+    seam_.see(t, into);
     if (last_trigger_us_ != kNoTime && t < last_trigger_us_)
         return damage_.count(DamageReason::time_backwards);
     if (held_trigger_ && t < to_us(held_trigger_->t)) {
@@ -135,14 +144,26 @@ void DatParser::let_trigger_go(Batch& into) {
     if (!held_trigger_) return;
     last_trigger_us_ = to_us(held_trigger_->t);
     into.triggers.push_back(*held_trigger_);
+    seam_.end();
     held_trigger_.reset();
 }
 
 void DatParser::finish(Batch& into) {
+    words_.finish([&](auto records) { take(records, into); }, [&](auto) { end_file(into); });
+    end_file(into);
+}
+
+void DatParser::end_file(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
     validator_.finish(into, damage_);
     let_trigger_go(into);
+}
+
+void DatParser::begin_file() {
+    const auto last = clock();
+    resync();
+    if (last) seam_.begin_file(to_us(*last));
 }
 
 void DatParser::resync() {

@@ -4,6 +4,7 @@
 #include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt_words.h"
+#include "src/codec/prophesee/joined_words.h"
 #include "src/codec/stream.h"
 
 #include <cstdint>
@@ -25,6 +26,7 @@ std::optional<DatHeader> find_dat_header(std::span<const std::byte> first_bytes)
 DatHeader read_dat_header(std::span<const std::byte> first_bytes);
 
 /// Reads the records after the header. Times are the file's own, with wraps of the 32 bits counted.
+/// A file that was joined behind another begins a new stream.
 class DatParser final : public Parser {
 public:
     /// Size in px, 0 when not known (then what the record's bits hold).
@@ -37,14 +39,18 @@ public:
     const Damage& damaged() const override { return damage_; }
 
 private:
+    static constexpr std::size_t kBytesBehindLines = 2;  // the records' type and size
     void take(std::span<const std::byte> records, Batch& into);
     static std::int64_t unwrapped(std::uint32_t stamp, std::int64_t near_us);
     void take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into);
     void let_trigger_go(Batch& into);
+    void end_file(Batch& into);
+    void begin_file();
 
     DatHeader::Record record_;
     EventValidator validator_;
-    WholeWords<8> words_;
+    JoinedWords<8> words_{kBytesBehindLines};
+    FileSeam seam_;
     EventBlock block_;
     Damage damage_;
     std::int64_t last_trigger_us_ = kNoTime;  ///< of those taken

@@ -31,6 +31,10 @@ constexpr std::int64_t low_time_of(std::uint32_t word) {
     return word >> 22 & 0x3F;
 }
 
+EvtTimeHigh no_time_yet() {
+    return {28, 6};
+}
+
 std::uint32_t side(int px) {
     return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
 }
@@ -38,7 +42,7 @@ std::uint32_t side(int px) {
 }  // namespace
 
 Evt2Base::Evt2Base(int width, int height)
-    : width_(side(width)), height_(side(height)), high_(28, 6) {}
+    : width_(side(width)), height_(side(height)), high_(no_time_yet()) {}
 
 void Evt2Base::take_event(std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool on,
                           Batch& into) {
@@ -71,6 +75,7 @@ void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
             const std::size_t before = into.events.size();
             high_.push(upper & 0x0FFFFFFF, into, damage_);
             take_let_go(into, before);
+            if (last_event_us_ == kNoTime) seam_.see(high_.us(), into);
             break;
         }
         case trigger:
@@ -110,6 +115,12 @@ void Evt2Base::begin_anew() {
     newest_us_ = last_event_us_ = kNoTime;
 }
 
+void Evt2Base::begin_file() {
+    seam_.begin_file(last_event_us_);
+    begin_anew();
+    high_ = no_time_yet();
+}
+
 void Evt2Base::reopened() {
     resync();
     high_.go_on_by_host();
@@ -121,7 +132,12 @@ std::optional<SensorTime> Evt2Base::clock() const {
 
 void Evt2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     high_.hand_out(into);
-    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+    words_.feed(
+        bytes, [&](auto words) { take(words, into); },
+        [&](auto) {
+            end_file(into);
+            begin_file();
+        });
 }
 
 void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
@@ -162,6 +178,11 @@ void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
 }
 
 void Evt2Parser::finish(Batch& into) {
+    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
+    end_file(into);
+}
+
+void Evt2Parser::end_file(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
     end(into);
@@ -174,7 +195,12 @@ void Evt2Parser::resync() {
 
 void Evt21Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     high_.hand_out(into);
-    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+    words_.feed(
+        bytes, [&](auto words) { take(words, into); },
+        [&](auto) {
+            end_file(into);
+            begin_file();
+        });
 }
 
 void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
@@ -215,6 +241,11 @@ void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
 }
 
 void Evt21Parser::finish(Batch& into) {
+    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
+    end_file(into);
+}
+
+void Evt21Parser::end_file(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
     end(into);

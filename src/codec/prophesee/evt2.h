@@ -4,6 +4,7 @@
 
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt_words.h"
+#include "src/codec/prophesee/joined_words.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,8 @@ namespace eventide {
 
 /// The part that EVT2 and EVT2.1 share. Reads bare words: what follows a file's header, or what a
 /// camera sends. Times are the stream's own, with wraps of the 34 bits counted from the first. What
-/// comes before the first time is passed over.
+/// comes before the first time is passed over. A file that was joined behind another begins a new
+/// stream.
 class Evt2Base : public Parser {
 public:
     void reopened() override;
@@ -32,6 +34,7 @@ protected:
     /// Nothing contradicts any more what waits for its time to be sure.
     void end(Batch& into);
     void begin_anew();
+    void begin_file();
     void move_clock(std::int64_t t_us) {
         if (t_us > newest_us_) newest_us_ = t_us;
     }
@@ -40,6 +43,7 @@ protected:
     Damage damage_;
     EventBlock block_;
     EvtTimeHigh high_;
+    FileSeam seam_;
     std::int64_t newest_us_ = kNoTime;      ///< told
     std::int64_t last_event_us_ = kNoTime;  ///< of the events taken
 
@@ -57,7 +61,8 @@ public:
 
 private:
     void take(std::span<const std::byte> words, Batch& into);
-    WholeWords<4> words_;
+    void end_file(Batch& into);
+    JoinedWords<4> words_;
 };
 
 class Evt21Parser final : public Evt2Base {
@@ -74,8 +79,9 @@ public:
 
 private:
     void take(std::span<const std::byte> words, Batch& into);
+    void end_file(Batch& into);
     Order order_;
-    WholeWords<8> words_;
+    JoinedWords<8> words_;
 };
 
 }  // namespace eventide

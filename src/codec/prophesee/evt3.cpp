@@ -26,6 +26,10 @@ enum Type : unsigned {
 constexpr std::uint16_t kPadding = 0x9999;
 constexpr unsigned kColumnBits = 0x7FF, kOnBit = 0x800, kTimeBits = 0xFFF;
 
+EvtTimeHigh no_time_yet() {
+    return {12, 12};
+}
+
 std::uint32_t side(int px) {
     return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
 }
@@ -33,11 +37,19 @@ std::uint32_t side(int px) {
 }  // namespace
 
 Evt3Parser::Evt3Parser(int width, int height, std::int64_t time_base_us)
-    : width_(side(width)), height_(side(height)), time_base_us_(time_base_us), high_(12, 12) {}
+    : width_(side(width)),
+      height_(side(height)),
+      time_base_us_(time_base_us),
+      high_(no_time_yet()) {}
 
 void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     high_.hand_out(into);
-    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+    words_.feed(
+        bytes, [&](auto words) { take(words, into); },
+        [&](auto header) {
+            end_file(into);
+            begin_file(header);
+        });
 }
 
 /// Rows, single events, vectors and times that grow, while nothing is wrong.
@@ -120,7 +132,6 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             take_vector(content & 0xFF, 8, into);
             break;
         case time_low:
-            if (!high_.is_known()) break;
             t_us_ = high_.us() + content;
             if (high_.is_sure()) move_clock();
             break;
@@ -132,6 +143,7 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             // The low bits follow in their own word and begin anew.
             if (first || high_.us() != high_us) t_us_ = high_.us();
             take_let_go(into, before);
+            if (last_event_us_ == kNoTime) seam_.see(high_.us() + time_base_us_, into);
             break;
         }
         case trigger:
@@ -201,6 +213,11 @@ void Evt3Parser::take_vector(unsigned mask, unsigned bits, Batch& into) {
 }
 
 void Evt3Parser::finish(Batch& into) {
+    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
+    end_file(into);
+}
+
+void Evt3Parser::end_file(Batch& into) {
     end_words();
     const std::size_t before = into.events.size();
     high_.believe(into, damage_);
@@ -228,6 +245,13 @@ void Evt3Parser::resync() {
     base_x_ = kNoColumn;
     newest_us_ = last_event_us_ = kNoTime;
     look();
+}
+
+void Evt3Parser::begin_file(std::span<const std::byte> header) {
+    seam_.begin_file(last_event_us_ == kNoTime ? kNoTime : last_event_us_ + time_base_us_);
+    resync();
+    high_ = no_time_yet();
+    if (const auto found = find_evt_header(header)) time_base_us_ = found->time_base_us;
 }
 
 void Evt3Parser::reopened() {

@@ -4,6 +4,7 @@
 
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt_words.h"
+#include "src/codec/prophesee/joined_words.h"
 #include "src/codec/stream.h"
 
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace eventide {
 
 /// Reads bare words: what follows a file's header, or what a camera sends. Times are the stream's
 /// own, with wraps of the 24 bits counted from the first. What comes before the first time is
-/// passed over.
+/// passed over. A file that was joined behind another begins a new stream.
 class Evt3Parser final : public Parser {
 public:
     /// Size in px, 0 when not known (then 2048, the most the format holds).
@@ -39,16 +40,19 @@ private:
     void take_trigger(unsigned content, Batch& into);
     void take_let_go(const Batch& into, std::size_t before);
     void end_words();
+    void end_file(Batch& into);
+    void begin_file(std::span<const std::byte> header);
     void move_clock();
     void look();
 
     std::uint32_t width_, height_;
     std::int64_t time_base_us_;
-    WholeWords<2> words_;
+    JoinedWords<2> words_;
     EventBlock block_;
     Damage damage_;
 
     EvtTimeHigh high_;
+    FileSeam seam_;
     std::int64_t t_us_ = 0;             ///< of the word being read, without time_base_us_
     std::int64_t newest_us_ = kNoTime;  ///< told
     std::int64_t last_event_us_ = kNoTime;

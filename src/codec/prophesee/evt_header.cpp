@@ -15,9 +15,8 @@ namespace {
 
 constexpr std::size_t kLongestLine = 4096;
 
-bool is_text(std::string_view line) {
-    return std::all_of(line.begin(), line.end(),
-                       [](char c) { return c == '\t' || c == '\r' || c < 0 || c >= ' '; });
+bool is_text(char c) {
+    return c == '\t' || c == '\r' || c < 0 || c >= ' ';
 }
 
 int side(std::string_view text) {
@@ -133,7 +132,8 @@ PercentLines read_percent_lines(std::span<const std::byte> first_bytes) {
     std::string_view text(reinterpret_cast<const char*>(first_bytes.data()), first_bytes.size());
     while (text.starts_with("% ")) {
         const std::size_t end = text.substr(0, kLongestLine).find('\n');
-        if (end == std::string_view::npos || !is_text(text.substr(0, end))) break;
+        if (end == std::string_view::npos || !std::ranges::all_of(text.substr(0, end), is_text))
+            break;
         std::string_view line = text.substr(2, end - 2);
         if (line.ends_with('\r')) line.remove_suffix(1);
         const std::size_t space = std::min(line.find(' '), line.size());
@@ -144,6 +144,17 @@ PercentLines read_percent_lines(std::span<const std::byte> first_bytes) {
         if (line == "end") break;
     }
     return lines;
+}
+
+bool is_percent_line_so_far(std::string_view line) {
+    constexpr std::string_view kBegin = "% ";
+    const char c = line.back();
+    if (line.size() > kLongestLine) return false;
+    return line.size() <= kBegin.size() ? kBegin.starts_with(line) : is_text(c) || c == '\n';
+}
+
+bool is_last_percent_line(std::string_view line) {
+    return line == "% end\n" || line == "% end\r\n";
 }
 
 std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes) {

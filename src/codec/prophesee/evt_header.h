@@ -23,6 +23,12 @@ struct PercentLines {
 };
 PercentLines read_percent_lines(std::span<const std::byte> first_bytes);
 
+/// Whether a line may begin so, or is whole with its newline, where this holds for all of it but
+/// its last character.
+bool is_percent_line_so_far(std::string_view line);
+/// "% end"; with its newline.
+bool is_last_percent_line(std::string_view line);
+
 struct EvtHeader {
     StreamHeader stream;          ///< format "evt2", "evt21" or "evt3"
     bool halves_swapped = false;  ///< EVT2.1 with the upper half of each word first

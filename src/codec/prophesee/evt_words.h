@@ -214,6 +214,24 @@ private:
     std::optional<HostTime> arrived_, told_at_;  ///< of these words; of those that told last_
 };
 
+constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
+
+/// Where a file was joined to another: says that time began anew, if it did.
+class FileSeam {
+public:
+    void begin_file(std::int64_t last_us) { last_us_ = std::max(last_us_, last_us); }
+    /// A time of the file behind it, each until one is believed: the first may lie.
+    void see(std::int64_t t_us, Batch& into) {
+        if (t_us >= last_us_) return;
+        into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
+        end();
+    }
+    void end() { last_us_ = kNoTime; }  ///< its data came out
+
+private:
+    std::int64_t last_us_ = kNoTime;  ///< of what came out before
+};
+
 /// A block of events on its way into a batch: written without checks for room, passed on when full.
 class EventBlock {
 public:
@@ -232,7 +250,5 @@ public:
 private:
     std::vector<Event> events_;
 };
-
-constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace eventide

@@ -14,7 +14,6 @@ namespace eventide::testing_support {
 namespace {
 
 constexpr std::uint32_t kFirstControl = 0x00980900;
-constexpr char kCard[] = "eventide testbed";
 
 const char* name_of(gulong request) {
     switch (request) {
@@ -91,7 +90,7 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
     switch (request) {
         case VIDIOC_QUERYCAP:
             return with<v4l2_capability>(arg, [&](v4l2_capability& c, auto*) {
-                std::memcpy(c.card, kCard, sizeof kCard);
+                settings.card.copy(reinterpret_cast<char*>(c.card), sizeof c.card - 1);
                 c.device_caps = settings.output         ? V4L2_CAP_VIDEO_OUTPUT
                                 : settings.multi_planar ? V4L2_CAP_VIDEO_CAPTURE_MPLANE
                                                         : V4L2_CAP_VIDEO_CAPTURE;
@@ -120,7 +119,9 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
             return with<v4l2_subdev_selection>(arg, [&](v4l2_subdev_selection& s, auto*) {
                 s.r = {0, 0, std::uint32_t(settings.sensor_width),
                        std::uint32_t(settings.sensor_height)};
-                return settings.sensor_width > 0 ? 0 : ENOTTY;
+                const bool is_known =
+                    s.which == V4L2_SUBDEV_FORMAT_ACTIVE && s.target == V4L2_SEL_TGT_CROP_BOUNDS;
+                return settings.sensor_width == 0 ? ENOTTY : is_known ? 0 : EINVAL;
             });
         default:
             return ENOTTY;
@@ -185,7 +186,7 @@ int V4l2Testbed::Parts::answer_controls(gulong request, UMockdevIoctlData* arg) 
         case VIDIOC_G_CTRL:
             return with<v4l2_control>(arg, [&](v4l2_control& c, auto*) {
                 const auto* control = find_control(c.id);
-                if (control == nullptr) return EINVAL;
+                if (control == nullptr || control->disabled) return EINVAL;
                 c.value = control->value;
                 return 0;
             });
@@ -219,7 +220,8 @@ int V4l2Testbed::Parts::dequeue(v4l2_buffer& buffer, UMockdevIoctlData* data) {
     queued.pop_front();
     buffer.sequence = sequence += content.skipped_before;
     ++sequence;
-    buffer.flags = content.error_flag ? V4L2_BUF_FLAG_ERROR : 0;
+    buffer.flags = V4L2_BUF_FLAG_MAPPED | V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN;
+    if (content.error_flag) buffer.flags |= V4L2_BUF_FLAG_ERROR;
     const std::size_t offset = settings.multi_planar ? settings.data_offset : 0;
     const std::size_t n = std::min(content.bytes.size(), settings.buffer_bytes - offset);
     Owned<UMockdevIoctlData> holder;
@@ -247,7 +249,9 @@ int V4l2Testbed::Parts::query_control(v4l2_query_ext_ctrl& query) const {
         std::strncpy(query.name, name.c_str(), sizeof query.name - 1);
         query.minimum = control.minimum;
         query.maximum = control.maximum;
-        query.flags = control.read_only ? V4L2_CTRL_FLAG_READ_ONLY : 0;
+        query.flags = control.disabled    ? V4L2_CTRL_FLAG_DISABLED
+                      : control.read_only ? V4L2_CTRL_FLAG_READ_ONLY
+                                          : 0;
         return 0;
     }
     return EINVAL;

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 namespace eventide::testing_support {
@@ -38,8 +39,9 @@ V4l2Testbed::V4l2Testbed(V4l2NodeSettings settings) : parts_(std::make_unique<Pa
     parts_->make_node(kNode, kRecord);
     parts_->make_node(kSubdevice, kSubdeviceRecord);
     gchar* root = umockdev_testbed_get_root_dir(parts_->testbed.get());
-    parts_->backing = ::open((std::string{root} + kNode).c_str(), O_RDWR);
+    parts_->file = std::string{root} + kNode;
     g_free(root);
+    parts_->backing = ::open(parts_->file.c_str(), O_RDWR);
     if (parts_->backing < 0) throw std::runtime_error("umockdev: no file behind /dev/video0");
 }
 
@@ -101,6 +103,16 @@ void V4l2Testbed::change_format(std::uint32_t fourcc, int width, int height) {
     parts_->settings.fourcc = fourcc;
     parts_->settings.width = width;
     parts_->settings.height = height;
+}
+
+void V4l2Testbed::hide_node(bool hidden) {
+    const std::string there = parts_->file, away = there + ".away";
+    std::filesystem::rename(hidden ? there : away, hidden ? away : there);
+}
+
+void V4l2Testbed::change_card(const std::string& card) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->settings.card = card;
 }
 
 void V4l2Testbed::take_controls_away() {

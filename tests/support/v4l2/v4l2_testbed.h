@@ -17,6 +17,7 @@ namespace eventide::testing_support {
 struct V4l2NodeSettings {
     bool output = false;  ///< takes frames instead of giving them
     bool multi_planar = false;
+    std::string card = "eventide testbed";
     std::uint32_t fourcc = 0;   ///< of a capture node
     int width = 0, height = 0;  ///< of a capture node's format
     bool streams = true;        ///< a capture node; else it can only be read from
@@ -29,6 +30,7 @@ struct V4l2NodeSettings {
     struct Control {
         std::int32_t minimum = 0, maximum = 0, value = 0;
         bool read_only = false, deaf = false;  ///< deaf: it keeps its value, and says so
+        bool disabled = false;
     };
     std::map<std::string, Control> controls;
 };
@@ -64,6 +66,10 @@ public:
 
     /// As a driver that was loaded again, or media-ctl, leaves it.
     void change_format(std::uint32_t fourcc, int width, int height);
+    /// /dev/video0 is gone, or there again.
+    void hide_node(bool hidden);
+    /// Another device is there.
+    void change_card(const std::string& card);
     /// The driver has none any more.
     void take_controls_away();
     V4l2NodeSettings::Control control(const std::string& name) const;

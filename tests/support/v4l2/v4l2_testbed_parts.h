@@ -26,7 +26,8 @@ struct V4l2Testbed::Parts {
     Owned<UMockdevTestbed> testbed;
     Owned<UMockdevIoctlBase> handler;
     mutable std::mutex mutex;  // for all below: requests come on umockdev's thread
-    int backing = -1;          // the node's file
+    std::string file;          // the node's, for real
+    int backing = -1;          // that, opened
     std::deque<std::uint32_t> queued;
     std::deque<Content> contents;
     std::uint32_t sequence = 0, buffers = 0;
