@@ -35,6 +35,7 @@ public:
         if (!batch.events.empty()) last_event_ = batch.events.back().t;
         for (const Event& event : batch.events)
             if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
+        images_ += batch.images.size();
         for (ReferenceImage& image : batch.images) into_.images.push_back(std::move(image));
         batch.clear();
         // Images before the first event wait for it to say which are wanted.
@@ -47,6 +48,7 @@ public:
     }
     /// Of the recording, inside and outside those times.
     std::uint64_t events() const { return events_; }
+    std::uint64_t images() const { return images_; }
     const ImageClock& image_clock() const { return image_clock_; }
 
 private:
@@ -70,7 +72,7 @@ private:
     ImageClock image_clock_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
     SensorTime last_event_ = SensorTime::min();
-    std::uint64_t events_ = 0;
+    std::uint64_t events_ = 0, images_ = 0;
     bool begun_ = false;
 };
 
@@ -121,9 +123,8 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     };
     if (const SensorDuration apart = keeper.image_clock().apart(); apart > SensorDuration{0})
         refuse(image_clock_text(apart));
-    if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
-    if (sequence.images.empty())
-        refuse("expected reference images to compare with, found none in the time asked for");
+    if (keeper.events() == 0) refuse("expected events, found none");
+    if (keeper.images() == 0) refuse("expected reference images to compare with, found none");
     if (sequence.width <= 0 || sequence.height <= 0)
         refuse("does not say the sensor's size; --input-size does");
     check_sensor_size(path.string(), sequence.width, sequence.height);
