@@ -169,9 +169,16 @@ TEST(NoiseFilterState, WithoutAnIntervalOneBeginsWithTheNextEvent) {
 TEST(NoiseFilterState, OfAnotherSensorIsRefused) {
     NoiseFilter filter{240, 180, {}};
     EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.state()), Error);
-    NoiseFilter::State hot = filter.state();
-    hot.hot_pixels.hot.pop_back();
-    EXPECT_THROW(filter.restore(hot), Error);
+    const auto refused = [&](auto spoil) {
+        NoiseFilter::State bad = filter.state();
+        spoil(bad);
+        EXPECT_THROW(filter.restore(bad), Error);
+    };
+    refused([](auto& bad) { bad.newest.pop_back(); });
+    refused([](auto& bad) { bad.polarity.pop_back(); });
+    refused([](auto& bad) { bad.tiles.pop_back(); });
+    refused([](auto& bad) { bad.hot_pixels.events.pop_back(); });
+    refused([](auto& bad) { bad.hot_pixels.hot.pop_back(); });
 }
 
 TEST(BinnerState, AnotherKnowsTheAges) {
