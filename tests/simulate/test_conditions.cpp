@@ -75,6 +75,25 @@ TEST(SceneConditions, ALampIsBeforeTheSameScene) {
     }
 }
 
+/// Share of the first two seconds of eight scenes in which the lamp is seen.
+double seen_at(double speed) {
+    const double white = simulation_preset("camera").scene.white_lux.high;
+    int seen = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const Scene scene = scene_under({.speed = speed, .lamp = 1000}, seed);
+        for (int i = 0; i < 100; ++i) {
+            Array2<float> light(kHeight, kWidth);
+            scene.render(.02 * i, {}, Scene::Show::light, light);
+            seen += *std::ranges::max_element(light.values()) > 100 * white;
+        }
+    }
+    return seen / 800.;
+}
+
+TEST(SceneConditions, ALampStaysInViewHoweverFastItGoes) {
+    for (const double speed : {10., 100., 1000., 10'000.}) EXPECT_GT(seen_at(speed), .95) << speed;
+}
+
 TEST(SceneConditions, ThesisScenesHaveNoSpeed) {
     try {
         under({.speed = 10}, simulation_preset("thesis_test"));
