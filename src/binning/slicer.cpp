@@ -38,7 +38,6 @@ void Slicer::change(const SlicerSettings& wanted) {
     now.max_width = wanted.max_width;
     adopt(now);
     if (begin_) origin_ = *begin_;
-    activity_.reset();
 }
 
 void Slicer::reset() {

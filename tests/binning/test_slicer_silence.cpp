@@ -297,6 +297,30 @@ TEST(Slicer, ResetIsAsConstructed) {
     }
 }
 
+TEST(Slicer, AResetForgetsAlsoWhatWasHeardAndThatTheStreamStoodStill) {
+    const std::vector<Event> before{at(5'000'000)}, events{at(1), at(3'000'000)};
+    const SlicerSettings settings = by_duration(1000);
+    Slicer slicer(settings, 240, 180);
+    slicer.hear(before);
+    slicer.push(before);
+    slicer.advance(from_us(9'000'000));
+    slicer.look_behind(from_us(5'000'000), HostTime{1s});
+    slicer.reset();
+    EXPECT_FALSE(slicer.begins_anew(from_us(1)));
+    std::vector<Kept> event_windows;
+    slicer.push(events);
+    slicer.finish();
+    take(slicer, event_windows);
+    EXPECT_EQ(event_windows, event_windows_of(settings, events));
+
+    slicer.reset();
+    slicer.push(before);
+    slicer.advance(from_us(9'000'000));
+    slicer.look_behind(from_us(5'000'000), HostTime{60s});
+    slicer.push(std::vector{at(5'000'001)});
+    EXPECT_EQ(slicer.counters().time_resets, 0U) << "behind for no second yet";
+}
+
 TEST(Slicer, AnEmptyStreamHasNoFrames) {
     for (const SlicerSettings& settings : {by_duration(10), by_count(5), by_reference(10)})
         EXPECT_TRUE(event_windows_of(settings, {}).empty());
