@@ -94,6 +94,24 @@ TEST(SceneConditions, ALampStaysInViewHoweverFastItGoes) {
     for (const double speed : {10., 100., 1000., 10'000.}) EXPECT_GT(seen_at(speed), .95) << speed;
 }
 
+TEST(SceneConditions, ALampIsWhiteWhereTheTruthIsOfGreyValues) {
+    const auto grey_of = [](const SceneConditions& conditions) {
+        Scene scene{under(conditions, simulation_preset("thesis_test")).scene,
+                    procedural_textures(10, 128), kWidth, kHeight, Random{3}};
+        scene.prepare(1);
+        Array2<float> grey(kHeight, kWidth);
+        scene.render(.5, {}, Scene::Show::grey, grey);
+        return grey;
+    };
+    const Array2<float> plain = grey_of({}), lit = grey_of({.lamp = 1000});
+    int white = 0;
+    for (std::size_t i = 0; i < plain.values().size(); ++i) {
+        white += lit.values()[i] == 1;
+        EXPECT_GE(lit.values()[i], plain.values()[i]);
+    }
+    EXPECT_GT(white, 10) << "of a disc of some 28 px, whose edge is soft";
+}
+
 TEST(SceneConditions, ThesisScenesHaveNoSpeed) {
     try {
         under({.speed = 10}, simulation_preset("thesis_test"));

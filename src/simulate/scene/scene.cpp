@@ -178,6 +178,7 @@ void Scene::add_lamp(const SceneSettings& settings) {
     Layer layer;
     layer.texture = &(*textures_)[0];
     layer.tone = {.offset = float(white_lux_ * settings.lamp), .factor = 0, .rate = 0};
+    layer.is_lamp = true;
     const double length = std::min(width_, height_) / 8.;
     layer.half_width = layer.half_height = length / 2;
     const double margin = length / 2;

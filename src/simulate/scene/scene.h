@@ -58,6 +58,7 @@ private:
         double softness_px = 0, opacity = 1;
         Affine texture_in_local;  // [-1, 1]^2 -> the texture's [0, 1]^2
         ToneCurve tone;
+        bool is_lamp = false;  // white all over, whatever its texture
         Flicker flicker;
     };
     struct View;
