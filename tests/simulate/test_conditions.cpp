@@ -60,6 +60,17 @@ TEST(SceneConditions, EverythingMovesAsManyTimesAsFast) {
     }
 }
 
+TEST(SceneConditions, ACameraOfWhichASpeedIsAskedForMoves) {
+    SceneSettings scene = under({.speed = 200}, simulation_preset("wide")).scene;
+    scene.objects_max = scene.pinned_max = 0;
+    scene.pause_start = scene.flicker_probability = scene.light_change_probability = 0;
+    for (std::uint64_t seed = 1; seed < 40; ++seed) {
+        Scene moving{scene, procedural_textures(4, 64), kWidth, kHeight, Random{seed}};
+        moving.prepare(2);
+        EXPECT_GT(pace_of(moving), 1.01 / scene.step_s.high) << seed;
+    }
+}
+
 TEST(SceneConditions, ALampIsBeforeTheSameScene) {
     for (std::uint64_t seed = 1; seed < 6; ++seed) {
         const Array2<float> plain = light_of(scene_under({}, seed));
