@@ -1,6 +1,7 @@
 // Reading a recording into memory, and cutting it.
 #include "apps/evaluate/reference_sequence.h"
 
+#include "pipeline/demosaiced.h"
 #include "pipeline/stages.h"
 #include "replay/formats.h"
 #include "replay/left_out.h"
@@ -93,6 +94,8 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     // Where no more was wanted, half a record in hand is no damage of the recording's.
     if (!keeper.past_end()) parser->finish(batch);
     keeper.take(batch);
+    for (ReferenceImage& image : into.images)
+        image = demosaiced(image, recording->info().colour_filter);
     into.damaged = parser->damaged();
     if (std::string text =
             left_out_text(path.string(), recording->info().format, keeper.events(), into.damaged);

@@ -1,8 +1,10 @@
 // Recordings with reference images, as they are read and cut into event windows.
 #include "apps/evaluate/reference_sequence.h"
 #include "pipeline/filters/event_filter.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
+#include "tests/io/bag_writer.h"
 #include "tests/support/flickering_light.h"
 
 #include <gmock/gmock.h>
@@ -60,6 +62,29 @@ TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
     EXPECT_EQ(part.images[0].t, from_us(200'000));
     ASSERT_EQ(part.events.size(), 1U);
     EXPECT_EQ(part.events[0].t, from_us(250'000));
+}
+
+TEST(ReferenceSequence, ImagesOfAColourCameraAreWhatItSawAndNoMosaic) {
+    constexpr int kRed = 200 * 257, kOthers = 20 * 257;
+    ReferenceImage mosaic;
+    mosaic.t = from_us(500);
+    mosaic.pixels = Array2<std::uint16_t>(4, 6);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 6; ++x)
+            mosaic.pixels(y, x) =
+                channel_at(ColourFilter::grbg, x, y) == ColourChannel::red ? kRed : kOthers;
+    const std::vector<Event> events{{from_us(1), 1, 1, Polarity::on},
+                                    {from_us(900), 2, 1, Polarity::off}};
+    const fs::path path = fresh_folder("colour_bag") / "colour.bag";
+    std::ofstream{path, std::ios::binary} << bag(
+        chunk("none", connection(3, "dvs_msgs/EventArray") + connection(5, "sensor_msgs/Image") +
+                          message(3, event_array(6, 4, events)) +
+                          message(5, image(mosaic, "bayer_grbg8"))));
+    const ReferenceSequence sequence = read_reference_sequence(path);
+    ASSERT_EQ(sequence.images.size(), 1U);
+    const Array2<float> seen = intensity_of(sequence.images[0]);
+    for (const float v : seen.values())
+        EXPECT_NEAR(v, (.299 * kRed + .701 * kOthers) / 65535, 1e-3);
 }
 
 TEST(ReferenceSequence, WhoseImagesHaveAnotherClockIsRefused) {
