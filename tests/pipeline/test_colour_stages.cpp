@@ -298,6 +298,9 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
             ReferenceImage mosaic;
             mosaic.x0 = x0;
             mosaic.y0 = y0;
+            mosaic.t = from_us(5);
+            mosaic.exposure_begin = from_us(3);
+            mosaic.exposure_end = from_us(7);
             mosaic.pixels = Array2<std::uint16_t>(5, 7);
             ReferenceImage bgr = mosaic;
             bgr.channels = 3;
@@ -314,6 +317,9 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
                 const BayerSite site = site_of(GetParam(), channel);
                 const auto part = image_of_site(mosaic, site, channel);
                 ASSERT_TRUE(part);
+                EXPECT_EQ(part->t, from_us(5));
+                EXPECT_EQ(part->exposure_begin, from_us(3));
+                EXPECT_EQ(part->exposure_end, from_us(7));
                 for (int y = 0; y < part->pixels.height(); ++y)
                     for (int x = 0; x < part->pixels.width(); ++x)
                         EXPECT_EQ(part->pixels(y, x), 500 + 1000 * int(channel) +
@@ -322,6 +328,18 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
                 EXPECT_EQ(image_of_site(bgr, site, channel)->pixels, part->pixels);
             }
         }
+}
+
+TEST_P(ColourStages, AnImageOfOneRowOrColumnHoldsHalfOfTheColours) {
+    for (const auto& [height, width] : {std::pair{1, 8}, {8, 1}}) {
+        ReferenceImage mosaic;
+        mosaic.pixels = Array2<std::uint16_t>(height, width);
+        for (const ColourChannel channel : kColourChannels) {
+            const BayerSite site = site_of(GetParam(), channel);
+            const bool holds_it = (height == 1 ? site.y : site.x) == 0;
+            EXPECT_EQ(image_of_site(mosaic, site, channel).has_value(), holds_it);
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, ColourStages,
