@@ -1,12 +1,12 @@
 // The EVREAL protocol (Ercan et al. 2023; docs/accuracy.md, "Protocols").
 #include "apps/evaluate/evaluate_recordings.h"
 #include "apps/evaluate/evreal_sequence.h"
-#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -35,11 +35,20 @@ const Cut* cut_of(std::string_view sequence) {
     return found == std::end(kCuts) ? nullptr : found;
 }
 
-std::string none_in_cut(const Cut& cut, std::size_t images) {
-    char seconds[64];
-    std::snprintf(seconds, sizeof seconds, "%g to %g s", cut.from_s, cut.to_s);
-    return std::string{cut.sequence} + ": none of its " + counted(images, "image") +
-           " lies in the cut, " + seconds;
+/// What a sequence that is shorter than its cut was scored on; empty where it is not.
+std::string shorter_than_cut(const Cut& cut, const SequenceReport& scored) {
+    constexpr double kImageSeconds = .5;  // no image need lie at the very end
+    const double last_s = scored.frames.empty() ? 0 : scored.frames.back().time_s;
+    if (last_s >= cut.to_s - kImageSeconds) return {};
+    char text[128];
+    if (scored.frames.empty())
+        std::snprintf(text, sizeof text, "none of its images lies in the cut, %g to %g s",
+                      cut.from_s, cut.to_s);
+    else
+        std::snprintf(text, sizeof text,
+                      "its images end at %.1f s, before the cut of EVREAL's tables, %g to %g s",
+                      last_s, cut.from_s, cut.to_s);
+    return std::string{cut.sequence} + ": " + text;
 }
 
 }  // namespace
@@ -60,10 +69,10 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
         // EVREAL's loader never takes a recording's last image.
         if (!cut && sequence.images.size() > 1) which.to = sequence.images.rbegin()[1].t;
         if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
-        const std::size_t images = sequence.images.size();
         SequenceResult result =
             evaluate_sequence(evaluation, std::move(sequence), "reference", which);
-        if (cut && result.report.frames.empty()) result.notes.push_back(none_in_cut(*cut, images));
+        if (std::string note = cut ? shorter_than_cut(*cut, result.report) : ""; !note.empty())
+            result.notes.push_back(std::move(note));
         return result;
     });
     if (evaluation.lpips() && evaluation.lpips()->name() != "LPIPS-Alex")

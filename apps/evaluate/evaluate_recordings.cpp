@@ -52,12 +52,15 @@ void require_scored(const ReferenceSequence& sequence, const ScoredImages& which
     const auto seconds = [&](SensorTime t) {
         return std::to_string(std::chrono::duration<double>(t - sequence.first).count());
     };
-    throw Error(ErrorKind::usage,
-                sequence.name + ": expected an image to score between --from and --to, found " +
-                    counted(sequence.images.size(), "image") + " from " +
-                    seconds(sequence.images.front().t) + " to " +
-                    seconds(sequence.images.back().t) + " s, the first " +
-                    std::to_string(which.skip) + " not scored (--skip)");
+    std::string found = counted(sequence.images.size(), "image");
+    if (!sequence.images.empty())
+        found += " from " + seconds(sequence.images.front().t) + " to " +
+                 seconds(sequence.images.back().t) + " s, the first " + std::to_string(which.skip) +
+                 " not scored (--skip)";
+    throw Error(ErrorKind::usage, sequence.name +
+                                      ": expected an image to score between --from and --to, "
+                                      "found " +
+                                      found);
 }
 
 }  // namespace
@@ -66,6 +69,9 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
                                  const std::string& window, const ScoredImages& which) {
     if (evaluation.settings().warn)
         for (const std::string& text : sequence.warnings) evaluation.settings().warn(text);
+    if (sequence.events.empty() && !sequence.images.empty())
+        throw Error(ErrorKind::input,
+                    sequence.name + ": expected events, found none in the time asked for");
     const std::unique_ptr<EventFilter> filter =
         evaluation.filter_for(sequence.width, sequence.height);
     const std::vector<std::size_t> scored = scored_images(sequence, which);
@@ -132,7 +138,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         const int images = int(sequence.images.size());
         which.skip = what.skip_images == RecordingSettings::kSkipHalf
                          ? images / 2
-                         : std::min(what.skip_images, images - 1);
+                         : std::max(0, std::min(what.skip_images, images - 1));
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
         require_scored(sequence, which);

@@ -15,7 +15,8 @@ namespace eventide {
 std::vector<std::filesystem::path> evreal_sequences(const std::filesystem::path& dataset);
 
 /// Reads one of them. Times are told from the first event or image, whichever comes first; only
-/// [from_s, to_s] is kept.
+/// [from_s, to_s] is kept, which may be nothing. Throws Error(input) where the recording has no
+/// events or no images.
 ReferenceSequence read_evreal_sequence(const std::filesystem::path& path,
                                        std::optional<double> from_s, std::optional<double> to_s);
 

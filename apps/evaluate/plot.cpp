@@ -248,12 +248,10 @@ std::string svg(const Plot& plot) {
                       "' font-family='sans-serif' font-size='12'>\n"
                       "<rect width='100%' height='100%' fill='white'/>\n" +
                       frame_of(plot, axes);
-    if (plot.diagonal) {
-        const double low = std::max(axes.x.low, axes.y.low);
-        const double high = std::min(axes.x.high, axes.y.high);
+    const double low = std::max(axes.x.low, axes.y.low);
+    if (const double high = std::min(axes.x.high, axes.y.high); plot.diagonal && low < high)
         out += line(axes.x.at(low), axes.y.at(low), axes.x.at(high), axes.y.at(high),
                     "stroke='#888' stroke-dasharray='5 4'");
-    }
     LabelPlaces places;
     for (const VerticalLine& mark : plot.marks) out += drawn(mark, axes, places);
     for (const bool joined : {true, false})  // points over lines

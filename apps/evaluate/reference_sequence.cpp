@@ -1,16 +1,20 @@
 // Reading a recording into memory, and cutting it.
 #include "apps/evaluate/reference_sequence.h"
 
+#include "pipeline/demosaiced.h"
 #include "pipeline/stages.h"
 #include "replay/formats.h"
 #include "replay/left_out.h"
 #include "src/binning/push_filtered.h"
+#include "src/core/batch_pieces.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
 #include "src/core/image_clock.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <system_error>
 #include <utility>
@@ -22,23 +26,33 @@ SensorDuration seconds(double s) {
     return SensorDuration{std::int64_t(std::llround(s * 1e6))};
 }
 
-/// Keeps what lies inside the times asked for.
+/// What one clock tells; members as ReferenceSequence has them.
+struct Part {
+    SensorTime first{};
+    std::vector<Event> events;
+    std::vector<ReferenceImage> images;
+};
+
+/// Keeps what lies inside the times asked for, of the part with the most images where the camera's
+/// clock began anew.
 class Keeper {
 public:
-    Keeper(ReferenceSequence& into, std::optional<double> from_s, std::optional<double> to_s)
-        : into_(into), from_s_(from_s), to_s_(to_s) {}
+    Keeper(std::optional<double> from_s, std::optional<double> to_s)
+        : from_s_(from_s), to_s_(to_s) {}
 
     void take(Batch& batch) {
         image_clock_.see(batch);
         events_ += batch.events.size();
+        images_ += batch.images.size();
         if (!begun_ && !batch.events.empty()) begin(batch);
-        if (!batch.events.empty()) last_event_ = batch.events.back().t;
-        for (const Event& event : batch.events)
-            if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
-        for (ReferenceImage& image : batch.images) into_.images.push_back(std::move(image));
-        batch.clear();
-        // Images before the first event wait for it to say which are wanted.
-        if (begun_) drop_images();
+        Batch piece;
+        for (BatchPieces pieces{batch}; pieces.next(piece);) take_piece(piece);
+    }
+    void finish(ReferenceSequence& into) {
+        if (part_.images.size() < best_.images.size()) part_ = std::move(best_);
+        into.first = part_.first;
+        into.events = std::move(part_.events);
+        into.images = std::move(part_.images);
     }
     /// By the events that came out: a parser's clock may run ahead of them.
     bool past_end() const {
@@ -47,30 +61,61 @@ public:
     }
     /// Of the recording, inside and outside those times.
     std::uint64_t events() const { return events_; }
+    std::uint64_t images() const { return images_; }
+    std::uint64_t resets() const { return resets_; }
     const ImageClock& image_clock() const { return image_clock_; }
 
 private:
     void begin(const Batch& batch) {
-        begun_ = true;
         SensorTime first = batch.events.front().t;
-        if (!into_.images.empty()) first = std::min(first, into_.images.front().t);
+        if (!part_.images.empty()) first = std::min(first, part_.images.front().t);
         if (!batch.images.empty()) first = std::min(first, batch.images.front().t);
-        into_.first = first;
+        begin_at(first);
+    }
+    void begin_at(SensorTime first) {
+        begun_ = true;
+        part_.first = first;
         if (from_s_) from_ = first + seconds(*from_s_);
         if (to_s_) to_ = first + seconds(*to_s_);
     }
+    /// The images of a piece came before its events.
+    void take_piece(Batch& piece) {
+        for (ReferenceImage& image : piece.images) part_.images.push_back(std::move(image));
+        for (const Event& event : piece.events) {
+            if (event.t < last_event_) begin_anew(event.t);
+            last_event_ = event.t;
+            if (event.t >= from_ && event.t <= to_) part_.events.push_back(event);
+        }
+        // Images before the first event wait for it to say which are wanted.
+        if (begun_) drop_images();
+    }
+    void begin_anew(SensorTime t) {
+        ++resets_;
+        Part ended = std::exchange(part_, {});
+        // Images that are told by the new clock may have come before its first event.
+        while (!ended.images.empty() && is_nearer(ended.images.back().t, t)) {
+            part_.images.insert(part_.images.begin(), std::move(ended.images.back()));
+            ended.images.pop_back();
+        }
+        if (best_.images.size() < ended.images.size()) best_ = std::move(ended);
+        begin_at(part_.images.empty() ? t : std::min(t, part_.images.front().t));
+    }
+    /// To the first event of the new clock than to the last one of the old.
+    bool is_nearer(SensorTime image, SensorTime t) const {
+        return std::chrono::abs(image - t) < std::chrono::abs(image - last_event_);
+    }
     void drop_images() {
-        std::erase_if(into_.images, [this](const ReferenceImage& image) {
+        std::erase_if(part_.images, [this](const ReferenceImage& image) {
             return image.t < from_ || image.t > to_;
         });
     }
 
-    ReferenceSequence& into_;
     std::optional<double> from_s_, to_s_;
+    Part part_, best_;  // of the clock at hand; of those before, the one with the most images
     ImageClock image_clock_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
     SensorTime last_event_ = SensorTime::min();
-    std::uint64_t events_ = 0;
+    std::uint64_t events_ = 0, images_ = 0, resets_ = 0;
     bool begun_ = false;
 };
 
@@ -91,6 +136,9 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     // Where no more was wanted, half a record in hand is no damage of the recording's.
     if (!keeper.past_end()) parser->finish(batch);
     keeper.take(batch);
+    keeper.finish(into);
+    for (ReferenceImage& image : into.images)
+        image = demosaiced(image, recording->info().colour_filter);
     into.damaged = parser->damaged();
     if (std::string text =
             left_out_text(path.string(), recording->info().format, keeper.events(), into.damaged);
@@ -112,18 +160,22 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           const OpenOptions& input) {
     ReferenceSequence sequence;
     sequence.name = sequence_name(path);
-    Keeper keeper{sequence, from_s, to_s};
+    Keeper keeper{from_s, to_s};
     read_recording(path, input, keeper, sequence);
     mend_times(sequence.images);
+    if (keeper.resets() > 0)
+        sequence.warnings.push_back(path.string() + ": its clock began anew " +
+                                    counted(keeper.resets(), "time") + "; the part with " +
+                                    counted(sequence.images.size(), "image") + " of its " +
+                                    std::to_string(keeper.images()) + " is used");
 
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::input, path.string() + ": " + what);
     };
     if (const SensorDuration apart = keeper.image_clock().apart(); apart > SensorDuration{0})
         refuse(image_clock_text(apart));
-    if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
-    if (sequence.images.empty())
-        refuse("expected reference images to compare with, found none in the time asked for");
+    if (keeper.events() == 0) refuse("expected events, found none");
+    if (keeper.images() == 0) refuse("expected reference images to compare with, found none");
     if (sequence.width <= 0 || sequence.height <= 0)
         refuse("does not say the sensor's size; --input-size does");
     check_sensor_size(path.string(), sequence.width, sequence.height);

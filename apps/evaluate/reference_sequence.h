@@ -35,8 +35,9 @@ struct ReferenceSequence {
 std::string sequence_name(const std::filesystem::path& path);
 
 /// Reads a recording of any format. Where given, only data in [from, to]
-/// (s from `first`) are kept. Image times are mended. Throws Error(input) where there are no
-/// events, no images, or no sensor size.
+/// (s from `first`) are kept, which may be none; where the clock began anew, of the part with the
+/// most images. Image times are mended; mosaics are in colour. Throws Error(input) where the
+/// recording has no events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {},

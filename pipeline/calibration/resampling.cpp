@@ -34,9 +34,9 @@ WeightTable<2> linear_weights() {
 }
 
 WeightTable<4> cubic_weights() {
-    constexpr double a = -.75;
-    const auto near = [](double d) { return ((a + 2) * d - (a + 3)) * d * d + 1; };
-    const auto far = [](double d) { return ((a * d - 5 * a) * d + 8 * a) * d - 4 * a; };
+    constexpr double kA = -.75;  // slope at a distance of 1
+    const auto near = [](double d) { return ((kA + 2) * d - (kA + 3)) * d * d + 1; };
+    const auto far = [](double d) { return ((kA * d - 5 * kA) * d + 8 * kA) * d - 4 * kA; };
     WeightTable<4> table;
     for (int i = 0; i < kSteps; ++i) {
         const double along = double(i) / kSteps;

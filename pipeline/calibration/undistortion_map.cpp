@@ -54,9 +54,10 @@ private:
     /// The smallest r from which on radius() falls, to a thousandth; 170 degrees of view are looked
     /// at.
     double first_turn() const {
-        constexpr double kStep = 1e-3, kWidest = 11.4;
-        for (double r = 0; r < kWidest; r += kStep)
-            if (!(radius(r + kStep) > radius(r))) return r;
+        constexpr double kStep = 1e-3;
+        constexpr int kSteps = 11'400;
+        for (int i = 0; i < kSteps; ++i)
+            if (const double r = i * kStep; !(radius(r + kStep) > radius(r))) return r;
         return std::numeric_limits<double>::infinity();
     }
 

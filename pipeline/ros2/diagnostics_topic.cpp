@@ -51,6 +51,7 @@ void DiagnosticsTopic::write(const Told& told) {
         {"stamp_s", seconds(double(told.stamp_us))},
         {"sensor_time_s", seconds(double(told.sensor_us))}};
     std::vector<KeyValue> values;
+    values.reserve(pairs.size());
     for (const auto& [key, value] : pairs) values.push_back({borrowed(key), borrowed(value)});
     const std::string words = offset_words(told.offset_us);
     std::vector<diagnostic_msgs_msg_dds__DiagnosticStatus_> status(1);

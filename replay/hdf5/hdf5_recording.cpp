@@ -65,7 +65,7 @@ std::string choose_camera(const Hdf5File& file, const Pair& pair, const std::str
             found.push_back(camera);
     if (!wanted.empty() && std::ranges::find(found, wanted) == found.end())
         refuse_stream(file, wanted, found);
-    const std::string chosen = wanted.empty() ? found.front() : wanted;
+    std::string chosen = wanted.empty() ? found.front() : wanted;
     for (const std::string& camera : found)
         if (camera != chosen) remarks.push_back(left_out_stream(camera, chosen, camera));
     return chosen;

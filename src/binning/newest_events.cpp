@@ -45,16 +45,16 @@ NewestEvents::Around NewestEvents::around(const Event& event, SensorDuration fir
     const I4 fired_limit = limit(fired_within), alike_limit = limit(alike_within);
     const I4 off = I4(splat(event.polarity == Polarity::off ? 1U : 0U));
     constexpr std::int32_t kNever = 0x7FFF'FFFF;
-    I4 found{};  // fired + 256 alike, of each column
+    I4 found{};  // fired + 256 alike, of each column; the fourth is none of the neighbours'
     const auto look_at = [&](std::size_t first, I4 not_these) {
         const I4 ages = I4(now - load(&words_[first])) | not_these;
         const I4 like = ((ages ^ off) & 1) == 0;
         found -= (ages <= fired_limit) + 256 * (like & (ages <= alike_limit));
     };
     const std::size_t own = at(event);
-    look_at(own - stride_ - 1, I4{0, 0, 0, kNever});
-    look_at(own - 1, I4{0, kNever, 0, kNever});
-    look_at(own + stride_ - 1, I4{0, 0, 0, kNever});
+    look_at(own - stride_ - 1, I4{});
+    look_at(own - 1, I4{0, kNever, 0, 0});
+    look_at(own + stride_ - 1, I4{});
     const std::int32_t sum = found[0] + found[1] + found[2];
     return {sum & 0xFF, sum >> 8};
 }

@@ -38,7 +38,6 @@ void Slicer::change(const SlicerSettings& wanted) {
     now.max_width = wanted.max_width;
     adopt(now);
     if (begin_) origin_ = *begin_;
-    activity_.reset();
 }
 
 void Slicer::reset() {
@@ -197,7 +196,6 @@ void Slicer::emit(SensorTime end, EventWindow& event_window) {
 void Slicer::begin_next_segment() {
     begin_ = origin_ = pending_.next_segment();
     ++clocks_given_;
-    activity_.reset();
     silence_.begin_anew();
     reset_ = true;
 }

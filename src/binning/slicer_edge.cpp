@@ -69,7 +69,7 @@ std::optional<SensorTime> Slicer::cut() {
             wait = settings_.reference_wait;
     }
     if (settings_.rule == WindowRule::content)
-        if (const auto busy = busy_at()) edge = std::min(edge, limit = *busy);
+        if (const auto busy = busy_at()) edge = std::min(edge, *busy);
     edge = widened(edge, limit);
     if (const auto events = pending_.segment(); events.size() >= most_events_) {
         const SensorTime last = events[most_events_ - 1].t;

@@ -18,6 +18,7 @@ void set_speed(SceneSettings& scene, double speed) {
     WanderSettings& wander = scene.wander;
     wander.usual_speed = {speed, speed};
     wander.usual = 1;
+    scene.still_background = 0;
     // What the speeds of objects are held within.
     wander.speed = {std::min(wander.speed.low, speed), std::max(wander.speed.high, speed)};
 }

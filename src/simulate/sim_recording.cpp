@@ -26,7 +26,7 @@ const SimRecordingSettings& checked(const SimRecordingSettings& s) {
     for (const double rate : {s.images_per_second, s.truths_per_second})
         if (!(rate >= 0 && rate <= kMaxPerSecond)) refuse("0 to 100000 images per second", rate);
     if (!(s.truth_scale > 0 && s.truth_scale <= 64)) refuse("a scale up to 64", s.truth_scale);
-    if (s.chunk <= SensorDuration{0}) refuse("a chunk above 0 us", s.chunk.count());
+    if (s.chunk <= SensorDuration{0}) refuse("a chunk above 0 us", double(s.chunk.count()));
     return s;
 }
 
@@ -99,6 +99,7 @@ ReferenceImage reference_image(SensorTime t, const Array2<float>& view) {
     image.pixels = Array2<std::uint16_t>(view.height(), view.width());
     for (std::size_t i = 0; i < view.values().size(); ++i)
         image.pixels.values()[i] =
+            // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below 0
             std::uint16_t(std::clamp(view.values()[i], 0.f, 1.f) * 65535 + .5f);
     return image;
 }

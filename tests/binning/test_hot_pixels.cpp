@@ -30,6 +30,10 @@ TEST(HotPixels, AreThoseThatStandAlone) {
 TEST(HotPixels, AreNotWhatTrembles) {
     EXPECT_EQ(hot_of({{7, 5}, {7, 6}, {7, 7}, {8, 8}, {9, 9}, {9, 10}}), 2U)
         << "a line of one pixel: its ends alone";
+    EXPECT_EQ(hot_of({{0, 5}, {0, 6}, {0, 7}}), 2U) << "along the sensor's edges, too";
+    EXPECT_EQ(hot_of({{19, 5}, {19, 6}, {19, 7}}), 2U);
+    EXPECT_EQ(hot_of({{5, 0}, {6, 0}, {7, 0}}), 2U);
+    EXPECT_EQ(hot_of({{5, 14}, {6, 14}, {7, 14}}), 2U);
 }
 
 TEST(HotPixels, AreTakenBackWhenTheyHaveCalmedDown) {
@@ -78,6 +82,8 @@ TEST(HotPixels, AreNoneAfterASilence) {
     EXPECT_FALSE(hot.is_hot(at(5'000'000, 7, 9))) << "in the interval before it did not fire";
     for (int ms = 5000; ms < 5600; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
     EXPECT_EQ(hot.count(), 1U) << "and again";
+    for (int ms = 0; ms < 600; ms += 10) hot.is_hot(at(3'600'000'000 + 1000 * ms, 7, 9));
+    EXPECT_EQ(hot.count(), 1U) << "also after an hour";
 }
 
 TEST(HotPixels, AreCountedFromWhereTheClockBeganAnew) {
@@ -89,6 +95,21 @@ TEST(HotPixels, AreCountedFromWhereTheClockBeganAnew) {
                 hot.is_hot(at(1000 * ms, 7, 9));
         for (int ms = 420; ms < 1000; ms += 83) hot.is_hot(at(1000 * ms, 7, 9));
         EXPECT_EQ(hot.count(), 0U) << first_ms;
+    }
+}
+
+TEST(HotPixels, AreKnownToTheOneTheyAreGivenTo) {
+    HotPixels first{kWidth, kHeight, 20, SensorDuration{500'000}};
+    HotPixels second{kWidth, kHeight, 20, SensorDuration{500'000}};
+    second.is_hot(at(900'000'000, 3, 3));  // of another recording
+    for (int ms = 0; ms < 1400; ms += 10) first.is_hot(at(1000 * ms, 7, 9));
+    for (int ms = 1000; ms < 1400; ms += 10) first.is_hot(at(1000 * ms, 2, 2));
+    second.restore(first.state());
+    EXPECT_TRUE(second.state() == first.state());
+    for (HotPixels* hot : {&first, &second}) {
+        EXPECT_TRUE(hot->is_hot(at(1'400'000, 7, 9)));
+        EXPECT_FALSE(hot->is_hot(at(1'410'000, 2, 2)));
+        EXPECT_TRUE(hot->is_hot(at(1'500'000, 2, 2))) << "with what was counted before";
     }
 }
 

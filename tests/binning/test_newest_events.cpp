@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <random>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -132,6 +133,21 @@ TEST(NewestEvents, AreKnownToTheOneTheyAreGivenTo) {
                 EXPECT_EQ(a.fired, b.fired);
                 EXPECT_EQ(a.alike, b.alike);
             }
+}
+
+/// The clock went back a little: what came before it did is in the future, and counts once that is
+/// past.
+TEST(NewestEvents, OfAMomentAheadAreGivenOnToo) {
+    NewestEvents first{kWidth, kHeight}, second{kWidth, kHeight};
+    first.forget(from_us(0));
+    first.set(at(5'240'000, 2, 2));
+    const SensorTime now = from_us(5'000'000);
+    second.restore(now, first.times(now), first.polarities(now));
+    for (const NewestEvents* newest : {&first, &second})
+        for (const auto& [us, fired] : {std::pair{5'000'001, 0}, {5'239'999, 0}, {5'240'001, 1}})
+            EXPECT_EQ(newest->around(at(us, 3, 3), SensorDuration{100}, SensorDuration{100}).fired,
+                      fired)
+                << us;
 }
 
 }  // namespace

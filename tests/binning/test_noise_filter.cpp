@@ -140,6 +140,31 @@ TEST(NoiseFilter, LearnsTheNoiseAndChoosesTheTimeByIt) {
     EXPECT_EQ(filter.noise_hz(), 0);
 }
 
+TEST(NoiseFilter, LearnsTheNoiseAtOnceWhereTheClockBeganAnew) {
+    constexpr int kSide = 64;
+    const Events loud = random_events(160'000, kSide, kSide, 1e6 / (8. * kSide * kSide));  // 5 s
+    const Events quiet = random_events(2'000, kSide, kSide, 1e6 / (1. * kSide * kSide));   // .5 s
+    NoiseFilter filter{kSide, kSide, {}};
+    Events events = loud;
+    filter.process(events);
+    EXPECT_GT(filter.noise_hz(), 5);
+    events = quiet;
+    filter.process(events);
+    EXPECT_LT(filter.noise_hz(), 1.4);
+}
+
+/// What is known of the noise halves with each quarter of a second, and is next to nothing.
+TEST(NoiseFilter, WithoutNoiseNeighboursSupportForAsLongAsTheyMay) {
+    NoiseFilter filter{64, 64, {}};
+    for (int i = 0; i < 6000; ++i) {
+        Events one{at(200'000 * i, 20, 20)};
+        filter.process(one);
+        if (i < 20) continue;
+        ASSERT_EQ(filter.within(), NoiseFilterSettings{}.longest) << filter.noise_hz() << " Hz";
+        ASSERT_GE(filter.quiet_within(), NoiseFilterSettings{}.longest * 2 / 3);
+    }
+}
+
 TEST(NoiseFilter, LearnsTheNoiseOfASensorThatIsNarrowerThanTwoTiles) {
     for (const auto& [width, height] : {std::pair{15, 15}, {5, 90}, {14, 96}, {96, 13}}) {
         NoiseFilter filter{width, height, {}};
@@ -274,6 +299,8 @@ TEST(NoiseFilter, IsChosenByAWordOrATime) {
     EXPECT_EQ(noise_filter_text(*parse_noise_filter("auto", false)), "auto");
     EXPECT_EQ(noise_filter_text(*parse_noise_filter("20ms", false)), "20ms");
     EXPECT_THROW((NoiseFilter{4, 4, constant(0)}), Error);
+    EXPECT_THROW((NoiseFilter{4, 4, constant(10'000'001)}), Error);
+    EXPECT_THROW((NoiseFilter{4, 4, {SensorDuration{2}, SensorDuration{1}}}), Error);
 }
 
 }  // namespace

@@ -153,6 +153,8 @@ TEST(Slicer, WaitsForALateImageAsLongAsItSaysThenCutsAtTheMaximumWidth) {
     EXPECT_EQ(edges_of(event_windows), (Edges{{0, 100}}));
     slicer.push_reference(from_us(60));
     EXPECT_EQ(slicer.counters().late_references, 1U);
+    slicer.push_reference(from_us(0));
+    EXPECT_EQ(slicer.counters().late_references, 1U) << "of before the first window";
 }
 
 }  // namespace

@@ -58,6 +58,22 @@ TEST(SlicerContent, ASensorOfOneTileIsBusyWhereThatIsFull) {
     EXPECT_LT(longest(event_windows), 20'000) << ".5 events of each of 1024 pixels in 13 ms";
 }
 
+TEST(SlicerContent, ATileThatTheSensorCutsIsFullWithEventsOfItsOwnPixels) {
+    // Two tiles, both of which must be full: one of 32 x 20 px, one of 8 x 20.
+    Slicer slicer{by_content(.5), 40, 20};
+    slicer.push(moving(1, 1, 100, 8));
+    std::vector<Event> rim;
+    for (int i = 0; i < 80; ++i)
+        rim.push_back(
+            {from_us(8000 + i), std::uint16_t(32 + i % 8), std::uint16_t(i / 8), Polarity::on});
+    slicer.push(rim);
+    slicer.advance(from_us(20'000));
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
+    ASSERT_EQ(event_windows.size(), 1U);
+    EXPECT_EQ(event_windows[0].end_us, 8079) << "with the 80th of 160 pixels";
+}
+
 TEST(SlicerContent, OneHotPixelEndsNoWindow) {
     std::vector<Event> events;
     for (std::int64_t us = 1; us <= 200'000; us += 2) events.push_back(at(us, 7));
@@ -112,6 +128,11 @@ TEST(SlicerContent, NoEventEndsAWindowBeforeAMillisecond) {
 TEST(SlicerContent, EventsOutsideTheSensorCountNowhere) {
     std::vector<Event> events = moving(2, 1, 2000, 50);
     for (Event& event : events) event.x = std::uint16_t(event.x + 240);
+    EXPECT_GE(longest(event_windows_of(by_content(.5), events)), 49'000);
+    for (Event& event : events) {
+        event.x = std::uint16_t(event.x - 240);
+        event.y = std::uint16_t(event.y + 180);
+    }
     EXPECT_GE(longest(event_windows_of(by_content(.5), events)), 49'000);
 }
 

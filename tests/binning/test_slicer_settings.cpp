@@ -37,12 +37,14 @@ TEST(WindowText, NamesReferenceImages) {
 
 TEST(WindowText, NamesContent) {
     EXPECT_EQ(parse_window("auto").rule, WindowRule::content);
+    EXPECT_EQ(parse_window("auto").events_per_pixel, .4);
     EXPECT_EQ(parse_window("auto").max_width, 100ms);
     EXPECT_EQ(parse_window("auto").min_width, 1ms);
     EXPECT_EQ(parse_window("auto,20ms").max_width, 20ms);
     EXPECT_EQ(parse_window("auto,20ms").min_width, 1ms);
     EXPECT_EQ(parse_window("auto,20ms,5ms").max_width, 20ms);
     EXPECT_EQ(parse_window("auto,20ms,5ms").min_width, 5ms);
+    EXPECT_EQ(parse_window("auto,5ms,5ms").min_width, 5ms);
 }
 
 TEST(WindowText, IsReadBackAsItWasWritten) {
@@ -52,15 +54,34 @@ TEST(WindowText, IsReadBackAsItWasWritten) {
 }
 
 TEST(WindowText, RefusesByName) {
-    for (const std::string text : {"",           "50",          "ms",
-                                   "50 ms",      "-5ms",        "0ms",
-                                   "0.2us",      "1e9s",        "nanms",
-                                   "infms",      "1.5ev",       "0ev",
-                                   "2e9ev",      "0epp",        "-1epp",
-                                   "50mss",      "aps ",        "50ms,100ms",
-                                   "20000ev,",   "20000ev,5ev", "auto,",
-                                   "auto,50ms,", "auto,50ms,5", "auto,5ms,50ms",
-                                   "auto,500us", "aps,1s,5ms",  "auto,50ms,5ms,1ms"})
+    for (const std::string text : {"",
+                                   "50",
+                                   "ms",
+                                   "50 ms",
+                                   "-5ms",
+                                   "0ms",
+                                   "0.2us",
+                                   "1e9s",
+                                   "nanms",
+                                   "infms",
+                                   "1.5ev",
+                                   "0ev",
+                                   "2e9ev",
+                                   "0epp",
+                                   "-1epp",
+                                   "1001epp",
+                                   "50mss",
+                                   "aps ",
+                                   "50ms,100ms",
+                                   "20000ev,",
+                                   "20000ev,5ev",
+                                   "auto,",
+                                   "auto,50ms,",
+                                   "auto,50ms,5",
+                                   "auto,5ms,50ms",
+                                   "auto,500us",
+                                   "aps,1s,5ms",
+                                   "auto,50ms,5ms,1ms"})
         try {
             parse_window(text);
             ADD_FAILURE() << "took '" << text << "'";
@@ -68,6 +89,22 @@ TEST(WindowText, RefusesByName) {
             EXPECT_EQ(error.kind(), ErrorKind::usage);
             EXPECT_NE(std::string{error.what()}.find("'" + text + "'"), std::string::npos);
         }
+}
+
+TEST(SlicerSettings, NoWindowHasMoreEventsThanMemoryIsFor) {
+    SlicerSettings settings = parse_window("1000000000ev");
+    EXPECT_EQ(events_per_window(settings, 240, 180), settings.max_events);
+    settings = parse_window("1000epp");
+    EXPECT_EQ(events_per_window(settings, 1280, 720), settings.max_events);
+    EXPECT_EQ(events_per_window(parse_window("50ms"), 240, 180), settings.max_events);
+}
+
+TEST(SlicerSettings, SilenceIsMergedAfterAWindowAtTheEarliest) {
+    SlicerSettings settings = parse_window("50ms");
+    settings.silent_windows = 1;
+    check_slicer_settings(settings, 240, 180);
+    settings.silent_windows = 0;
+    EXPECT_THROW(check_slicer_settings(settings, 240, 180), Error);
 }
 
 }  // namespace

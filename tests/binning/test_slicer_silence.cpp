@@ -297,6 +297,74 @@ TEST(Slicer, ResetIsAsConstructed) {
     }
 }
 
+TEST(Slicer, AResetForgetsAlsoWhatWasHeardAndThatTheStreamStoodStill) {
+    const std::vector<Event> before{at(5'000'000)}, events{at(1), at(3'000'000)};
+    const SlicerSettings settings = by_duration(1000);
+    Slicer slicer(settings, 240, 180);
+    slicer.hear(before);
+    slicer.push(before);
+    slicer.advance(from_us(9'000'000));
+    slicer.look_behind(from_us(5'000'000), HostTime{1s});
+    slicer.reset();
+    EXPECT_FALSE(slicer.begins_anew(from_us(1)));
+    std::vector<Kept> event_windows;
+    slicer.push(events);
+    slicer.finish();
+    take(slicer, event_windows);
+    EXPECT_EQ(event_windows, event_windows_of(settings, events));
+
+    slicer.reset();
+    slicer.push(before);
+    slicer.advance(from_us(9'000'000));
+    slicer.look_behind(from_us(5'000'000), HostTime{60s});
+    slicer.push(std::vector{at(5'000'001)});
+    EXPECT_EQ(slicer.counters().time_resets, 0U) << "behind for no second yet";
+}
+
+TEST(Slicer, AfterAResetItsBeginAndEndHoldForTheStreamThatComes) {
+    SlicerSettings settings = by_duration(1000);
+    settings.begin = from_us(2000);
+    settings.duration = SensorDuration{3000};
+    const std::vector<Event> events{at(1500), at(2500), at(4200), at(9000)};
+    const auto expected = event_windows_of(settings, events);
+    ASSERT_EQ(expected.back().end_us, 5000);
+    Slicer slicer(settings, 240, 180);
+    slicer.push(std::vector{at(3000), at(5000), at(100)});  // the clock began anew
+    slicer.look_behind(from_us(-9'000'000), HostTime{1s});
+    slicer.look_behind(from_us(-9'000'000), HostTime{9s});  // and is about to do so again
+    for (int turn = 0; turn < 2; ++turn) {  // the second after one that was past its end
+        slicer.reset();
+        slicer.push(events);
+        EXPECT_TRUE(slicer.is_past_end());
+        EXPECT_FALSE(slicer.began_anew());
+        std::vector<Kept> event_windows;
+        take(slicer, event_windows);
+        slicer.finish();
+        take(slicer, event_windows);
+        EXPECT_EQ(event_windows, expected);
+    }
+}
+
+TEST(Slicer, EndsWithWhatWasHeardLastThoughAFilterLeftItOut) {
+    Slicer slicer(by_duration(1000), 240, 180);
+    slicer.hear(std::vector{at(1), at(4500)});
+    slicer.push(std::vector{at(1)});
+    slicer.finish();
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
+    ASSERT_FALSE(event_windows.empty());
+    EXPECT_EQ(event_windows.back().end_us, 4500);
+}
+
+TEST(Slicer, AWindowArrivedWithItsLastEvents) {
+    Slicer slicer(by_duration(1000), 240, 180);
+    slicer.push(std::vector{at(1), at(1500)}, HostTime{1s});
+    slicer.push({}, HostTime{9s});  // of a packet whose events were all left out
+    EventWindow event_window;
+    ASSERT_TRUE(slicer.next(event_window));
+    EXPECT_EQ(event_window.arrived, HostTime{1s});
+}
+
 TEST(Slicer, AnEmptyStreamHasNoFrames) {
     for (const SlicerSettings& settings : {by_duration(10), by_count(5), by_reference(10)})
         EXPECT_TRUE(event_windows_of(settings, {}).empty());

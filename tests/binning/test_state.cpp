@@ -80,6 +80,19 @@ TEST(SlicerState, WhatAFilterHeldBackComesYetThoughItIsBeforeTheBeginAskedFor) {
     EXPECT_EQ(windows[0].events.size(), 2U);
 }
 
+TEST(SlicerState, AnEventFromBeforeAWindowThatHasJustBegunIsNotLost) {
+    Slicer slicer{by_duration(1000), 240, 180};
+    slicer.restore(
+        {from_us(1000), from_us(0), from_us(1000), from_us(900), from_us(900), 1, 0, false, {}});
+    slicer.push(std::vector{at(950)});
+    slicer.finish();
+    std::vector<Kept> windows;
+    take(slicer, windows);
+    ASSERT_EQ(windows.size(), 1U);
+    EXPECT_EQ(windows[0].events.size(), 1U);
+    EXPECT_EQ(slicer.counters().late, 1U);
+}
+
 TEST(SlicerState, ThereIsNoneOfWhatCannotGoOn) {
     Slicer empty{by_duration(1000), 240, 180}, images{by_reference(1000), 240, 180},
         reset{by_duration(1000), 240, 180};
@@ -169,9 +182,16 @@ TEST(NoiseFilterState, WithoutAnIntervalOneBeginsWithTheNextEvent) {
 TEST(NoiseFilterState, OfAnotherSensorIsRefused) {
     NoiseFilter filter{240, 180, {}};
     EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.state()), Error);
-    NoiseFilter::State hot = filter.state();
-    hot.hot_pixels.hot.pop_back();
-    EXPECT_THROW(filter.restore(hot), Error);
+    const auto refused = [&](auto spoil) {
+        NoiseFilter::State bad = filter.state();
+        spoil(bad);
+        EXPECT_THROW(filter.restore(bad), Error);
+    };
+    refused([](auto& bad) { bad.newest.pop_back(); });
+    refused([](auto& bad) { bad.polarity.pop_back(); });
+    refused([](auto& bad) { bad.tiles.pop_back(); });
+    refused([](auto& bad) { bad.hot_pixels.events.pop_back(); });
+    refused([](auto& bad) { bad.hot_pixels.hot.pop_back(); });
 }
 
 TEST(BinnerState, AnotherKnowsTheAges) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <optional>
@@ -28,9 +29,11 @@ public:
     }
     void reset() noexcept override { ++resets; }
     int resets = 0;
+    Array2<std::uint8_t> touched;  // of the newest grid
 
 private:
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        touched = grid.touched;
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) latent.values(y, x, 0) = grid.values(y, x, 0);
     }
@@ -47,9 +50,17 @@ public:
         frame.intensity = frame.sigma = Array2<float>(out_height_, out_width_);
         return frame;
     }
-    void take(LatentMap& latent) noexcept override { newest_ = latent.values; }
-    void finish() noexcept override {}
-    void reset() noexcept override {}
+    void take(LatentMap& latent) noexcept override {
+        newest_ = latent.values;
+        stamp = latent;
+        events_per_pixel = latent.events_per_pixel;
+    }
+    void finish() noexcept override { ++ends; }
+    void reset() noexcept override { ++resets; }
+    bool change_lookahead(int to) override {
+        lookahead = to;
+        return can_change_lookahead;
+    }
     void render(SensorTime, const Window&, Frame& frame) noexcept override {
         for (int y = 0; y < out_height_; ++y)
             for (int x = 0; x < out_width_; ++x) {
@@ -60,12 +71,17 @@ public:
             }
     }
     bool change_size(int width, int height, Frame& frame) override {
+        if (!can_change_size) return false;
         out_width_ = width;
         out_height_ = height;
         frame = make_output();
         if (takes_the_last_memory) shortage.emplace(1);
         return true;
     }
+    WindowStamp stamp;
+    Array2<float> events_per_pixel;
+    int ends = 0, resets = 0, lookahead = 0;
+    bool can_change_lookahead = true, can_change_size = true;
     bool takes_the_last_memory = false;
     std::optional<test::MemoryShortage> shortage;
 
@@ -148,6 +164,98 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
     EXPECT_EQ(all.resets + blue.resets + green.resets + red.resets, 4);
 }
 
+/// A part of a frame shows what the whole frame shows there; beyond the outermost pixels of a
+/// colour theirs goes on.
+TEST_P(ColourStages, ShowPartsOfFramesAndTheirEdges) {
+    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
+        red{kHeight / 2, kWidth / 2};
+    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    LatentMap latent = encode.make_output();
+    encode.encode(grid(), latent);
+    const auto shown_at = [&](const ColourRenderStage::View& view, int height, int width) {
+        EchoRenderer whole{kHeight, kWidth, height, width};
+        std::array<EchoRenderer, 3> parts{
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+        ColourRenderStage render{
+            whole, {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth, kHeight, view, latent};
+        render.take(latent);
+        Frame frame = render.make_output();
+        render.render({}, {}, frame);
+        return frame;
+    };
+    /// Red less blue, which the frame of all pixels has no part in.
+    const auto difference = [](const Frame& frame, int y, int x) {
+        return frame.colour[2](y, x) - frame.colour[0](y, x);
+    };
+    const Frame whole = shown_at({kWidth, kHeight, 0, 0}, kHeight, kWidth);
+    const Frame part = shown_at({kWidth, kHeight, 5, 3}, 4, 6);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 6; ++x)
+            EXPECT_NEAR(difference(part, y, x), difference(whole, y + 3, x + 5), 1e-6);
+    const Frame one = shown_at({1, 1, 0, 0}, 1, 1);
+    EXPECT_NEAR(difference(one, 0, 0), difference(whole, 0, 0), 1e-6);
+    /// Of every second pixel from `site` on.
+    const auto nearest = [](int at, int size, int site) {
+        return std::clamp(at, site, size - 2 + site);
+    };
+    for (const int y : {0, kHeight - 1})
+        for (const int x : {0, kWidth - 1}) {
+            const auto seen = [&](ColourChannel channel) {
+                const BayerSite site = site_of(GetParam(), channel);
+                return shown(channel, nearest(x, kWidth, site.x), nearest(y, kHeight, site.y));
+            };
+            EXPECT_NEAR(difference(whole, y, x),
+                        seen(ColourChannel::red) - seen(ColourChannel::blue), 1e-5);
+        }
+}
+
+TEST_P(ColourStages, TellEachColourWhatIsKnownOfItsPixelsAndOfTheWindow) {
+    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
+        red{kHeight / 2, kWidth / 2};
+    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    EchoRenderer whole{kHeight, kWidth, kHeight, kWidth};
+    std::array<EchoRenderer, 3> parts{
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+    LatentMap latent = encode.make_output();
+    ColourRenderStage render{whole,   {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth,
+                             kHeight, {kWidth, kHeight, 0, 0},           latent};
+    VoxelGrid events = grid();
+    events.window = {from_us(5), from_us(9)};
+    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            events.touched(y, x) = std::uint8_t(channel_at(GetParam(), x, y) == ColourChannel::red);
+            latent.events_per_pixel(y, x) = float(channel_at(GetParam(), x, y));
+        }
+    encode.encode(events, latent);
+    render.take(latent);
+    for (const auto& [encoder, channel] : {std::pair{&blue, ColourChannel::blue},
+                                           {&green, ColourChannel::green},
+                                           {&red, ColourChannel::red}}) {
+        const EchoRenderer& renderer = parts[std::size_t(channel)];
+        for (const std::uint8_t touched : encoder->touched.values())
+            EXPECT_EQ(touched, channel == ColourChannel::red ? 1 : 0);
+        EXPECT_EQ(renderer.stamp.window.end, from_us(9));
+        for (const float n : renderer.events_per_pixel.values()) EXPECT_EQ(n, float(channel));
+    }
+    EXPECT_EQ(whole.stamp.window.end, from_us(9));
+    render.finish();
+    render.reset();
+    parts[1].can_change_lookahead = false;
+    EXPECT_FALSE(render.change_lookahead(2)) << "green cannot";
+    for (const EchoRenderer* each : {&whole, &parts[0], &parts[1], &parts[2]}) {
+        EXPECT_EQ(each->ends, 1);
+        EXPECT_EQ(each->resets, 1);
+        EXPECT_EQ(each->lookahead, 2);
+    }
+    parts[1].can_change_lookahead = true;
+    EXPECT_TRUE(render.change_lookahead(1));
+}
+
 TEST_P(ColourStages, ChangeTheSizeOfAllColoursOrOfNone) {
     if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
     EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
@@ -171,6 +279,11 @@ TEST_P(ColourStages, ChangeTheSizeOfAllColoursOrOfNone) {
     render.render({}, {}, frame);
     EXPECT_EQ(frame.intensity.width(), kWidth);
     EXPECT_EQ(frame.colour[0].width(), kWidth);
+    whole.can_change_size = false;
+    EXPECT_FALSE(render.change_size(2 * kWidth, 2 * kHeight, frame));
+    render.render({}, {}, frame);
+    EXPECT_EQ(frame.colour[0].width(), kWidth);
+    whole.can_change_size = true;
     whole.takes_the_last_memory = true;
     EXPECT_TRUE(render.change_size(2 * kWidth, 2 * kHeight, frame));
     whole.shortage.reset();
@@ -185,6 +298,9 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
             ReferenceImage mosaic;
             mosaic.x0 = x0;
             mosaic.y0 = y0;
+            mosaic.t = from_us(5);
+            mosaic.exposure_begin = from_us(3);
+            mosaic.exposure_end = from_us(7);
             mosaic.pixels = Array2<std::uint16_t>(5, 7);
             ReferenceImage bgr = mosaic;
             bgr.channels = 3;
@@ -201,6 +317,9 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
                 const BayerSite site = site_of(GetParam(), channel);
                 const auto part = image_of_site(mosaic, site, channel);
                 ASSERT_TRUE(part);
+                EXPECT_EQ(part->t, from_us(5));
+                EXPECT_EQ(part->exposure_begin, from_us(3));
+                EXPECT_EQ(part->exposure_end, from_us(7));
                 for (int y = 0; y < part->pixels.height(); ++y)
                     for (int x = 0; x < part->pixels.width(); ++x)
                         EXPECT_EQ(part->pixels(y, x), 500 + 1000 * int(channel) +
@@ -209,6 +328,18 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
                 EXPECT_EQ(image_of_site(bgr, site, channel)->pixels, part->pixels);
             }
         }
+}
+
+TEST_P(ColourStages, AnImageOfOneRowOrColumnHoldsHalfOfTheColours) {
+    for (const auto& [height, width] : {std::pair{1, 8}, {8, 1}}) {
+        ReferenceImage mosaic;
+        mosaic.pixels = Array2<std::uint16_t>(height, width);
+        for (const ColourChannel channel : kColourChannels) {
+            const BayerSite site = site_of(GetParam(), channel);
+            const bool holds_it = (height == 1 ? site.y : site.x) == 0;
+            EXPECT_EQ(image_of_site(mosaic, site, channel).has_value(), holds_it);
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, ColourStages,

@@ -60,6 +60,17 @@ TEST(SceneConditions, EverythingMovesAsManyTimesAsFast) {
     }
 }
 
+TEST(SceneConditions, ACameraOfWhichASpeedIsAskedForMoves) {
+    SceneSettings scene = under({.speed = 200}, simulation_preset("wide")).scene;
+    scene.objects_max = scene.pinned_max = 0;
+    scene.pause_start = scene.flicker_probability = scene.light_change_probability = 0;
+    for (std::uint64_t seed = 1; seed < 40; ++seed) {
+        Scene moving{scene, procedural_textures(4, 64), kWidth, kHeight, Random{seed}};
+        moving.prepare(2);
+        EXPECT_GT(pace_of(moving), 1.01 / scene.step_s.high) << seed;
+    }
+}
+
 TEST(SceneConditions, ALampIsBeforeTheSameScene) {
     for (std::uint64_t seed = 1; seed < 6; ++seed) {
         const Array2<float> plain = light_of(scene_under({}, seed));
@@ -73,6 +84,43 @@ TEST(SceneConditions, ALampIsBeforeTheSameScene) {
         EXPECT_GE(same, plain.values().size() - 120);
         EXPECT_LE(same, plain.values().size() - 10);
     }
+}
+
+/// Share of the first two seconds of eight scenes in which the lamp is seen.
+double seen_at(double speed) {
+    const double white = simulation_preset("camera").scene.white_lux.high;
+    int seen = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const Scene scene = scene_under({.speed = speed, .lamp = 1000}, seed);
+        for (int i = 0; i < 100; ++i) {
+            Array2<float> light(kHeight, kWidth);
+            scene.render(.02 * i, {}, Scene::Show::light, light);
+            seen += *std::ranges::max_element(light.values()) > 100 * white;
+        }
+    }
+    return seen / 800.;
+}
+
+TEST(SceneConditions, ALampStaysInViewHoweverFastItGoes) {
+    for (const double speed : {10., 100., 1000., 10'000.}) EXPECT_GT(seen_at(speed), .95) << speed;
+}
+
+TEST(SceneConditions, ALampIsWhiteWhereTheTruthIsOfGreyValues) {
+    const auto grey_of = [](const SceneConditions& conditions) {
+        Scene scene{under(conditions, simulation_preset("thesis_test")).scene,
+                    procedural_textures(10, 128), kWidth, kHeight, Random{3}};
+        scene.prepare(1);
+        Array2<float> grey(kHeight, kWidth);
+        scene.render(.5, {}, Scene::Show::grey, grey);
+        return grey;
+    };
+    const Array2<float> plain = grey_of({}), lit = grey_of({.lamp = 1000});
+    int white = 0;
+    for (std::size_t i = 0; i < plain.values().size(); ++i) {
+        white += lit.values()[i] == 1;
+        EXPECT_GE(lit.values()[i], plain.values()[i]);
+    }
+    EXPECT_GT(white, 10) << "of a disc of some 28 px, whose edge is soft";
 }
 
 TEST(SceneConditions, ThesisScenesHaveNoSpeed) {

@@ -33,6 +33,11 @@ TEST(ControlCurve, CubicReproducesACubicExactly) {
     }
 }
 
+TEST(ControlCurve, ThroughThreePointsIsAParabola) {
+    const ControlCurve curve{{1, 2, 7}, true};  // 1 - 2 x + 8 x^2
+    for (double x = 0; x <= 1; x += .05) EXPECT_NEAR(curve.at(x), 1 - 2 * x + 8 * x * x, 1e-9);
+}
+
 TEST(ThesisMotion, BeginsAtRestInItsRangesAndComesBack) {
     const ThesisMotionSettings settings;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -44,6 +49,7 @@ TEST(ThesisMotion, BeginsAtRestInItsRangesAndComesBack) {
         for (double t = 0; t < settings.duration_s; t += .1) {
             const Pose pose = motion->at(t), back = motion->at(2 * settings.duration_s - t);
             EXPECT_NEAR(pose.x, back.x, 1e-9);
+            EXPECT_NEAR(pose.x, motion->at(6 * settings.duration_s + t).x, 1e-9) << "and again";
             // Points lie in the table's ranges; a cubic may swing beyond by some.
             EXPECT_LT(std::abs(pose.x), 2 * 2 * settings.displacement_max);
             EXPECT_LT(std::abs(pose.angle), 2 * settings.angle_max);
@@ -60,6 +66,23 @@ TEST(ThesisMotion, NeverTurnsTheImageOverWhereACubicSwingsBeyondItsPoints) {
             smallest = std::min({smallest, motion->at(t).scale_x, motion->at(t).scale_y});
     }
     EXPECT_EQ(smallest, .1);
+}
+
+/// The thesis' s and r: each scene uses a share of the ranges of scale and angle.
+TEST(ThesisMotion, ScalesAndTurnsByAShareOfTheirRangesThatIsDrawnForEachScene) {
+    const ThesisMotionSettings settings{.control_points_max = 2, .linear_probability = 1};
+    double angle = 0, scale = 0, x = 0;
+    constexpr int kScenes = 2000;
+    for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
+        const Pose last = thesis_motion(settings, Random{seed})->at(settings.duration_s);
+        angle += std::abs(last.angle) / kScenes;
+        scale += std::abs(last.scale_x - 1) / kScenes;
+        x += std::abs(last.x) / kScenes;
+    }
+    // Two points of a range are a third of it apart on average; the share is a half.
+    EXPECT_NEAR(angle, settings.angle_max / 6, .02);
+    EXPECT_NEAR(scale, settings.scale_max / 6, .01);
+    EXPECT_NEAR(x, 2 * settings.displacement_max / 3, .02) << "all of it";
 }
 
 /// In how many of 400 steps the x of a motion changes its speed.
@@ -187,6 +210,19 @@ TEST(WanderMotion, DoesNotDependOnHowItIsPreparedOrForgotten) {
     }
 }
 
+TEST(WanderMotion, IsThereFromTheTimeOnBeforeWhichItWasForgotten) {
+    WanderSettings settings;
+    settings.linear_probability = 0;
+    const auto whole = wander_motion(settings, 50, 20, {}, {}, Random{5});
+    const auto part = wander_motion(settings, 50, 20, {}, {}, Random{5});
+    whole->prepare(40);
+    for (double t = 0; t < 20; t += .01) {
+        part->prepare(t + 20);
+        part->forget(t);
+        ASSERT_EQ(whole->at(t).x, part->at(t).x) << t;
+    }
+}
+
 /// How far a motion at 100 px/s is from its start after 20 s, on average.
 double way_from_start(const WanderSettings& settings) {
     double total = 0;
@@ -208,6 +244,9 @@ TEST(WanderMotion, TremblesAboutOnePlaceWhereAskedFor) {
     settings.tremble = .5;
     EXPECT_GT(way_from_start(settings), near + (far - near) / 4);
     EXPECT_LT(way_from_start(settings), far - (far - near) / 4);
+    settings.tremble = 1;
+    settings.turn = {0, 0};
+    EXPECT_LT(way_from_start(settings), 250) << "however straight others go";
 }
 
 /// Share of the time in which a motion at 100 px/s goes slower than `px_s`.
@@ -290,6 +329,36 @@ TEST(PauseClock, NeverRunsBackwardsOrFasterThanTime) {
         EXPECT_GE(way, 0);
         EXPECT_LE(way, .007 + 1e-12);
     }
+}
+
+TEST(PauseClock, IsThereFromTheTimeOnBeforeWhichItWasForgotten) {
+    PauseClock whole{.2, .5, .03, Random{3}}, part{.2, .5, .03, Random{3}};
+    whole.prepare(40);
+    for (double t = 0; t < 20; t += .01) {
+        part.prepare(t + 20);
+        part.forget(t);
+        ASSERT_EQ(whole.at(t), part.at(t)) << t;
+    }
+}
+
+TEST(LightChanges, IsThereFromTheTimeOnBeforeWhichItWasForgotten) {
+    LightChanges whole{.7, .1, Random{4}}, part{.7, .1, Random{4}};
+    whole.prepare(40);
+    for (double t = 0; t < 20; t += .01) {
+        part.prepare(t + 20);
+        part.forget(t);
+        ASSERT_EQ(whole.log_gain(t), part.log_gain(t)) << t;
+    }
+}
+
+TEST(LightChanges, BeginsAnywhereInItsDepth) {
+    double mean = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        LightChanges light{.8, .1, Random{seed}};
+        light.prepare(1);
+        mean += light.log_gain(0) / 400;
+    }
+    EXPECT_NEAR(mean, -.4, .05);
 }
 
 TEST(LightChanges, StaysInItsDepth) {

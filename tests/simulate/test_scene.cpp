@@ -218,6 +218,23 @@ TEST(Scene, PinnedThingsStandStillWithTheBackground) {
     EXPECT_GT(seen, 5);
 }
 
+TEST(Scene, HasFromNoneToTheMostPinnedThings) {
+    SceneSettings settings = pinned_scenes();
+    settings.still_background = 1;
+    settings.object_size = settings.object_aspect = {1.2, 1.2};
+    int seen = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Array2<float> light(36, 48), bare(36, 48);
+        settings.pinned_max = 1;
+        make_scene(settings, seed).render(0, {}, Scene::Show::light, light);
+        settings.pinned_max = 0;
+        make_scene(settings, seed).render(0, {}, Scene::Show::light, bare);
+        seen += difference(light, bare) > 0;
+    }
+    EXPECT_GT(seen, 15);
+    EXPECT_LT(seen, 40) << "half of them have none";
+}
+
 TEST(Scene, PinnedThingsGoWhereTheBackgroundGoes) {
     SceneSettings settings = pinned_scenes();
     settings.still_background = 0;

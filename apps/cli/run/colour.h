@@ -33,10 +33,6 @@ ColourFilter source_colours_of(const RunSettings& settings, const SensorInfo& so
 ColourFilter colour_filter_of(const RunSettings& settings, ColourFilter source,
                               const SensorInfo& sensor, const FilterChain& filters);
 
-/// A mosaic as BGR (OpenCV, bilinear); images that are none stay as they are. An image that says
-/// its own filter is taken at its word where `filter` is none.
-ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter);
-
 /// What --colour adds to the stages for all pixels.
 class ColourNetworks {
 public:

@@ -1,5 +1,7 @@
 #include "apps/cli/run/data_observers.h"
 
+#include "pipeline/demosaiced.h"
+
 namespace eventide::app {
 
 void DataObservers::see(const Batch& batch) {

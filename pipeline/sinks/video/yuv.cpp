@@ -27,6 +27,7 @@ constexpr const Coding& numbers_of(YuvCoding coding) {
 }
 
 std::uint8_t byte_of(float value) {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below 0
     return std::uint8_t(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 

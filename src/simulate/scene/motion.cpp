@@ -86,7 +86,8 @@ public:
         leg_s_ = random_.log_uniform(tremble ? settings.tremble_leg_s : settings.leg_s);
         const double width = home.x1 - home.x0, height = home.y1 - home.y0;
         // A leg that leaves home far behind would mean a thing hardly ever seen.
-        if (width > 0 && speed > 0) leg_s_ = std::min(leg_s_, std::hypot(width, height) / speed);
+        if (width > 0 && speed > 0)
+            leg_s_ = std::min(leg_s_, home.longest_leg * std::hypot(width, height) / speed);
         turn_ = random_.uniform(tremble ? settings.tremble_turn : settings.turn);
         spin_ = random_.uniform(settings.spin_share) * speed / radius;
         zoom_ = random_.uniform(settings.zoom_share) * speed / radius;

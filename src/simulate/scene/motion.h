@@ -67,6 +67,7 @@ Affine thesis_transform(const Pose& pose);
 /// Where something may roam; the legs turn back at its edge. Empty (x1 <= x0): anywhere.
 struct Home {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    double longest_leg = 1;  ///< share of the diagonal; the longer, the further beyond the edge
 };
 
 /// `speed` in px/s, `radius` (px) turns the shares of spin and zoom into rates.

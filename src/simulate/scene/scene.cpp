@@ -114,11 +114,10 @@ void Scene::add_background(const SceneSettings& settings) {
     layers_.push_back(std::move(layer));
 }
 
-/// Where it starts and how it goes on from there, up to so far beyond the sensor.
-void Scene::set_moving(Layer& layer, const SceneSettings& settings, double reach_px) {
+/// Where it starts and how it goes on from there.
+void Scene::set_moving(Layer& layer, const SceneSettings& settings, const Home& home) {
     const double speed = std::clamp(speed_ * random_.log_uniform(settings.object_speed),
                                     settings.wander.speed.low, settings.wander.speed.high);
-    const Home home{-reach_px, -reach_px, width_ + reach_px, height_ + reach_px};
     const Point start{random_.uniform({0, double(width_)}), random_.uniform({0, double(height_)})};
     layer.motion =
         wander_motion(settings.wander, speed, layer.half_width, start, home, random_.fork());
@@ -152,7 +151,8 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
                         .after(Affine::rotation(random_.uniform({0, 2 * std::numbers::pi})))
                         .after(Affine::translation(place(width_), place(height_)));
     } else {
-        set_moving(layer, settings, settings.object_reach * length);
+        const double reach = settings.object_reach * length;
+        set_moving(layer, settings, {-reach, -reach, width_ + reach, height_ + reach});
     }
     draw_shape(layer, settings);
     layer.opacity = random_.uniform(settings.opacity);
@@ -172,14 +172,17 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
 }
 
 /// An eighth of the shorter side across, and as bright all over. It turns back at the edge of the
-/// view; a fast one goes far beyond it before it does.
+/// view, and does not go so far at a time that it would be out of it for long.
 void Scene::add_lamp(const SceneSettings& settings) {
+    constexpr double kLampLeg = .3;  // of its home's diagonal
     Layer layer;
     layer.texture = &(*textures_)[0];
     layer.tone = {.offset = float(white_lux_ * settings.lamp), .factor = 0, .rate = 0};
+    layer.is_lamp = true;
     const double length = std::min(width_, height_) / 8.;
     layer.half_width = layer.half_height = length / 2;
-    set_moving(layer, settings, -length / 2);
+    const double margin = length / 2;
+    set_moving(layer, settings, {margin, margin, width_ - margin, height_ - margin, kLampLeg});
     layer.shape = Shape::disc();
     layer.softness_px = 1;
     layers_.push_back(std::move(layer));

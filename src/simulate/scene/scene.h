@@ -58,6 +58,7 @@ private:
         double softness_px = 0, opacity = 1;
         Affine texture_in_local;  // [-1, 1]^2 -> the texture's [0, 1]^2
         ToneCurve tone;
+        bool is_lamp = false;  // white all over, whatever its texture
         Flicker flicker;
     };
     struct View;
@@ -67,7 +68,7 @@ private:
     void add_background(const SceneSettings& settings);
     void add_object(const SceneSettings& settings, bool pinned);
     void add_lamp(const SceneSettings& settings);
-    void set_moving(Layer& layer, const SceneSettings& settings, double reach_px);
+    void set_moving(Layer& layer, const SceneSettings& settings, const Home& home);
     void draw_shape(Layer& layer, const SceneSettings& settings);
     double layer_time(const Layer& layer, double scene_s) const;
     Affine to_local(const Layer& layer, double scene_s) const;

@@ -83,7 +83,10 @@ void Scene::render(double t_s, const Affine& to_sensor, Show show, Array2<float>
             const std::span<float> values{view.shape ? over.data() : row.data(), n};
             view.layer->texture->sample(Texture::walk(view.to_image, view.x0, y), view.detail,
                                         values);
-            if (show != Show::grey) apply(view.layer->tone, view.gain, values);
+            if (show != Show::grey)
+                apply(view.layer->tone, view.gain, values);
+            else if (view.layer->is_lamp)
+                std::ranges::fill(values, 1.F);
             if (!view.shape) continue;
             view.shape->cover(view.x0, y, {cover.data(), n});
             blend(values, {cover.data(), n}, view.layer->opacity, row.data() + view.x0);

@@ -118,6 +118,7 @@ Texture::Level Texture::make_level(const Array2<float>& image) {
     for (int y = -1; y <= image.height(); ++y)
         for (int x = -1; x <= image.width(); ++x) {
             const float v = image(mirrored(y, image.height()), mirrored(x, image.width()));
+            // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below 0
             level.texels.push_back(std::uint16_t(std::clamp(v, 0.f, 1.f) * 65535 + .5f));
         }
     return level;
@@ -145,11 +146,11 @@ struct LookUp {
     const std::uint16_t* texels;
     std::uint32_t log2_width, shift_u, shift_v;
 
-    LookUp(const std::vector<std::uint16_t>& values, int log2_width_, int log2_height)
+    LookUp(const std::vector<std::uint16_t>& values, int width_log2, int height_log2)
         : texels(values.data()),
-          log2_width(std::uint32_t(log2_width_)),
+          log2_width(std::uint32_t(width_log2)),
           shift_u(31 - log2_width),
-          shift_v(31 - std::uint32_t(log2_height)) {}
+          shift_v(31 - std::uint32_t(height_log2)) {}
 
     lanes::F4 operator()(lanes::U4 u, lanes::U4 v) const {
         using namespace lanes;

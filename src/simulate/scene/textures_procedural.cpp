@@ -20,6 +20,7 @@ GreyImage to_grey(const Canvas& canvas) {
     const auto [low, high] = std::ranges::minmax(canvas.values());
     const float scale = 255.f / std::max(1e-6f, high - low);
     for (std::size_t i = 0; i < canvas.values().size(); ++i)
+        // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below 0
         image.values()[i] = std::uint8_t((canvas.values()[i] - low) * scale + .5f);
     return image;
 }

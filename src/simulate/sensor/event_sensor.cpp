@@ -48,7 +48,7 @@ struct Photoreceptor {
 
 /// How long leaks are added up before the references take them over: what leaks in a step may be
 /// less than a rounding of a float.
-constexpr double kLeakTaken_s = 1;
+constexpr double kLeakTakenSeconds = 1;
 
 }  // namespace
 
@@ -143,7 +143,7 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
         for (std::size_t lane = 0; i + lane < pixels_; ++lane) rest[lane] = light[i + lane];
         block(i, rest);
     }
-    if (leaking_s_ >= kLeakTaken_s) take_leaks();
+    if (leaking_s_ >= kLeakTakenSeconds) take_leaks();
     add_shot_noise(step, light, gain, events);
     add_hot_pixels(step, events);
 }

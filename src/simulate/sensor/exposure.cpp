@@ -12,7 +12,7 @@ namespace eventide {
 
 namespace {
 
-constexpr double kMeterEvery_s = .02;
+constexpr double kMeterEverySeconds = .02;
 constexpr int kMeterPoints = 16;  // in each direction
 
 std::vector<float> metered(const Array2<float>& light, double light_gain, double gamma) {
@@ -56,7 +56,7 @@ double Exposure::gain_for_mean(const std::vector<float>& signal, double gain) co
 }
 
 bool Exposure::due(double t_s) const {
-    return history_.empty() || (!fixed_ && t_s >= history_.back().t_s + kMeterEvery_s);
+    return history_.empty() || (!fixed_ && t_s >= history_.back().t_s + kMeterEverySeconds);
 }
 
 void Exposure::meter(double t_s, const Array2<float>& light, double light_gain) {

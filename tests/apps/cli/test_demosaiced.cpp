@@ -1,5 +1,6 @@
 // Images of sensors with a colour filter: which it is, and demosaiced where they can be.
 #include "apps/cli/run/colour.h"
+#include "pipeline/demosaiced.h"
 #include "tests/io/bag_writer.h"
 #include "tests/replay/recording_files.h"
 

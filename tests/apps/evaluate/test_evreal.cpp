@@ -55,7 +55,30 @@ TEST(Evreal, SaysWhichSequenceHasNoImageInItsCut) {
     const EvaluateReport report = evaluate_evreal(dataset, small_model());
     EXPECT_EQ(report.overall.frames, 0);
     ASSERT_EQ(report.notes.size(), 1U);
-    EXPECT_EQ(report.notes[0], "boxes_6dof: none of its 5 images lies in the cut, 5 to 20 s");
+    EXPECT_EQ(report.notes[0], "boxes_6dof: none of its images lies in the cut, 5 to 20 s");
+}
+
+TEST(Evreal, GoesOnWhereASequenceEndsBeforeWhatIsReadOfIt) {
+    const fs::path dataset = fresh_folder("ecd_very_short");
+    write_recording(dataset / "outdoor_day2", 1.05, .01, .25);  // read from 90 s on
+    write_recording(dataset / "unknown", 1.05, .01, .25);
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    ASSERT_EQ(report.sequences.size(), 2U);
+    EXPECT_EQ(report.sequences[0].scores.frames, 0);
+    EXPECT_EQ(report.sequences[1].scores.frames, 4);
+    ASSERT_EQ(report.notes.size(), 1U);
+    EXPECT_EQ(report.notes[0], "outdoor_day2: none of its images lies in the cut, 100 to 160 s");
+}
+
+TEST(Evreal, SaysWhereASequenceEndsBeforeItsCutDoes) {
+    const fs::path dataset = fresh_folder("ecd_partial");
+    write_recording(dataset / "slider_depth", 1.8, .01, .25);
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    EXPECT_EQ(report.sequences[0].scores.frames, 4);
+    ASSERT_EQ(report.notes.size(), 1U);
+    EXPECT_EQ(report.notes[0],
+              "slider_depth: its images end at 1.8 s, before the cut of EVREAL's tables, 1 to 2.5 "
+              "s");
 }
 
 /// What is too short for its cut tells it.
@@ -65,15 +88,20 @@ TEST(Evreal, CutsItsSequencesWhereItsTablesDo) {
         {"dynamic_6dof", "5 to 20 s"},      {"indoor_flying1", "10 to 70 s"},
         {"indoor_flying2", "10 to 70 s"},   {"indoor_flying3", "10 to 70 s"},
         {"indoor_flying4", "10 to 19.8 s"}, {"office_zigzag", "5 to 12 s"},
-        {"poster_6dof", "5 to 20 s"},       {"shapes_6dof", "5 to 20 s"},
-        {"slider_depth", "1 to 2.5 s"}};
+        {"outdoor_day2", "100 to 160 s"},   {"poster_6dof", "5 to 20 s"},
+        {"shapes_6dof", "5 to 20 s"},       {"slider_depth", "1 to 2.5 s"}};
     const fs::path dataset = fresh_folder("ecd_cuts");
     std::vector<std::string> notes;
     for (const auto& [name, cut] : cuts) {
         write_recording(dataset / name, .2, .002, .1);
-        notes.push_back(name + ": none of its 2 images lies in the cut, " + cut);
+        notes.push_back(name + ": none of its images lies in the cut, " + cut);
     }
     EXPECT_EQ(evaluate_evreal(dataset, small_model()).notes, notes);
+
+    const fs::path day = write_recording(fresh_folder("ecd_day") / "outdoor_day1", .2, .002, .1);
+    EXPECT_EQ(
+        evaluate_evreal(day, small_model()).notes.at(0),
+        "outdoor_day1: its images end at 0.1 s, before the cut of EVREAL's tables, 0 to 60 s");
 }
 
 TEST(Evreal, NeverTakesTheLastImageOfAWholeRecording) {

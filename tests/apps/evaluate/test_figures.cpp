@@ -46,6 +46,14 @@ TEST(Plot, SurvivesNoPointsOnePointAndLogarithmsOfZero) {
         }
 }
 
+TEST(Plot, HasItsDiagonalWhereThatPassesThroughItsFrame) {
+    Plot plot{.name = "p", .series = {{"s", {.1, .3}, {.2, .4}, {}}}, .diagonal = true};
+    EXPECT_EQ(count(svg(plot), "stroke-dasharray"), 1);
+    plot.series[0].x = {.01, .02};
+    plot.series[0].y = {.3, .35};
+    EXPECT_EQ(count(svg(plot), "stroke-dasharray"), 0) << "it would be drawn beside the frame";
+}
+
 TEST(Plot, IsFlatWhereValuesDifferByRoundingAlone) {
     const double y = .7, x = 3;
     const Plot plot{.name = "p",

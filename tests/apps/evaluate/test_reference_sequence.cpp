@@ -1,8 +1,12 @@
 // Recordings with reference images, as they are read and cut into event windows.
 #include "apps/evaluate/reference_sequence.h"
 #include "pipeline/filters/event_filter.h"
+#include "replay/formats.h"
+#include "replay/recording_file.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
+#include "tests/io/bag_writer.h"
 #include "tests/support/flickering_light.h"
 
 #include <gmock/gmock.h>
@@ -60,6 +64,68 @@ TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
     EXPECT_EQ(part.images[0].t, from_us(200'000));
     ASSERT_EQ(part.events.size(), 1U);
     EXPECT_EQ(part.events[0].t, from_us(250'000));
+}
+
+TEST(ReferenceSequence, ImagesOfAColourCameraAreWhatItSawAndNoMosaic) {
+    constexpr int kRed = 200 * 257, kOthers = 20 * 257;
+    ReferenceImage mosaic;
+    mosaic.t = from_us(500);
+    mosaic.pixels = Array2<std::uint16_t>(4, 6);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 6; ++x)
+            mosaic.pixels(y, x) =
+                channel_at(ColourFilter::grbg, x, y) == ColourChannel::red ? kRed : kOthers;
+    const std::vector<Event> events{{from_us(1), 1, 1, Polarity::on},
+                                    {from_us(900), 2, 1, Polarity::off}};
+    const fs::path path = fresh_folder("colour_bag") / "colour.bag";
+    std::ofstream{path, std::ios::binary} << bag(
+        chunk("none", connection(3, "dvs_msgs/EventArray") + connection(5, "sensor_msgs/Image") +
+                          message(3, event_array(6, 4, events)) +
+                          message(5, image(mosaic, "bayer_grbg8"))));
+    const ReferenceSequence sequence = read_reference_sequence(path);
+    ASSERT_EQ(sequence.images.size(), 1U);
+    const Array2<float> seen = intensity_of(sequence.images[0]);
+    for (const float v : seen.values())
+        EXPECT_NEAR(v, (.299 * kRed + .701 * kOthers) / 65535, 1e-3);
+}
+
+/// Bytes of a recording from 0 on, an event each millisecond and an image each 100 ms.
+std::string aedat3_bytes(const fs::path& path, int images) {
+    StreamHeader header;
+    header.width = header.height = 8;
+    RecordingFile file{path.string(), true, open_writer("aedat3"), header};
+    for (int i = 0; i < images; ++i) {
+        Batch batch;
+        for (int ms = 0; ms < 100; ++ms)
+            batch.events.push_back(
+                {from_us(1000 * (100 * i + ms)), std::uint16_t(ms % 8), 1, Polarity::on});
+        ReferenceImage image;
+        image.t = image.exposure_begin = image.exposure_end = batch.events.back().t;
+        image.pixels = Array2<std::uint16_t>(8, 8);
+        batch.add_image(image);
+        file.write(batch);
+    }
+    file.finish();
+    std::ifstream written{path, std::ios::binary};
+    return {std::istreambuf_iterator<char>{written}, {}};
+}
+
+TEST(ReferenceSequence, OfARecordingWhoseClockBeganAnewIsThePartWithMostImages) {
+    const fs::path folder = fresh_folder("joined");
+    const std::string longer = aedat3_bytes(folder / "longer.aedat", 5),
+                      shorter = aedat3_bytes(folder / "shorter.aedat", 2);
+    const ReferenceSequence alone = read_reference_sequence(folder / "longer.aedat");
+    EXPECT_TRUE(alone.warnings.empty());
+    for (const std::string& joined : {longer + shorter, shorter + longer, longer + longer}) {
+        std::ofstream{folder / "joined.aedat", std::ios::binary} << joined;
+        const ReferenceSequence part = read_reference_sequence(folder / "joined.aedat");
+        EXPECT_EQ(part.events, alone.events);
+        EXPECT_EQ(part.images, alone.images);
+        EXPECT_EQ(part.first, alone.first);
+        ASSERT_EQ(part.warnings.size(), 1U);
+        EXPECT_THAT(part.warnings[0],
+                    testing::HasSubstr("joined.aedat: its clock began anew 1 time"));
+    }
 }
 
 TEST(ReferenceSequence, WhoseImagesHaveAnotherClockIsRefused) {
