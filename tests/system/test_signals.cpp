@@ -76,12 +76,14 @@ TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
 }
 
 TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
-    const std::string pipe = temp_ / "events.txt";
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const std::string pipe = temp_ / "events.txt", video = temp_ / "video.mp4";
+    for (const std::string& made : {pipe, video}) ASSERT_EQ(mkfifo(made.c_str(), 0600), 0);
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", recording(), "--out", "null", "--events-out", pipe},
           {"run", recording(), "--out", "null", "--stats", pipe},
+          {"run", recording(), "--out", "null", "--state-out", pipe},
           {"run", recording(), "--out", "gray8:" + pipe},
+          {"run", recording(), "--out", video},
           {"convert", recording(), pipe},
           {"simulate", "--size", "64x48", "--out", pipe}}) {
         Process process = start(command);

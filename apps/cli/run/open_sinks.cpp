@@ -49,7 +49,7 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
                       settings.video_preset, settings.video_crf, plan.fps, settings.slow,
-                      settings.events, shown_part(settings, plan.sensor)});
+                      settings.events, shown_part(settings, plan.sensor), plan.questions.stopping});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
@@ -182,6 +182,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.overwrite = settings.overwrite;
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
+    sheet.give_up = plan.questions.stopping;
     sheet.truth_caption = plan.reference_caption;
     sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
     // Beside frames in colour, else in grey.

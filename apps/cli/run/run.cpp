@@ -5,7 +5,6 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
-#include "apps/cli/run/state/run_state.h"
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
 #include "pipeline/first_error.h"
@@ -154,11 +153,9 @@ void Run::go_to_begin() {
 }
 
 void Run::open_outputs() {
-    const OutputOptions growing{
-        .overwrite = settings_.overwrite, .appears = Appears::growing, .give_up = [this] {
-            start_.goes_on();
-            return program_.signals.stopping();
-        }};
+    const OutputOptions growing{.overwrite = settings_.overwrite,
+                                .appears = Appears::growing,
+                                .give_up = [this] { return gives_up(); }};
     readers_.wait(growing.give_up);
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
@@ -222,7 +219,7 @@ Snapshot Run::counters() const {
         now.camera = camera->counters();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
-    now.waits = waits_.value();
+    now.waits = waits_;
     if (!is_stream_)
         now.parsed_bytes =
             opened_.recording->position_bytes() + bytes_to_read_ - opened_.recording->size_bytes();
@@ -257,9 +254,7 @@ int Run::run() {
                   manager_,
                   quality};
     run_pipeline();
-    if (!settings_.state_out.empty())
-        write_safetensors(settings_.state_out, state_of(network_, colour_ ? &*colour_ : nullptr),
-                          settings_.overwrite);
+    if (!settings_.state_out.empty()) keep_last_state();
     return report(status.finish());
 }
 

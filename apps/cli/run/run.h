@@ -55,12 +55,14 @@ private:
     bool as_live() const { return live() || settings_.realtime; }
     double pace() const;
     RunQuality::Place quality_place() const;
+    bool gives_up();
     SinkPlan sink_plan();
     ModelRenderStage render_stage();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
     void resume();
     void keep_state(const PipelineState& memory);
+    void keep_last_state();
     void run_pipeline();
     bool wrote_all_data() const;
     RunProgress progress() const;
@@ -109,7 +111,7 @@ private:
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::optional<Pipeline> pipeline_;
     std::size_t states_ = 0;                    // kept until now
-    Counter waits_;                             // Snapshot::waits; render thread
+    std::atomic<std::uint64_t> waits_{0};       // Snapshot::waits
     std::vector<std::unique_ptr<Sink>> sinks_;  // last: a page's threads ask the others
 };
 

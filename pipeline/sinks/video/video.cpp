@@ -18,7 +18,8 @@ namespace {
 std::unique_ptr<VideoFile> create(const std::filesystem::path& path,
                                   const VideoSettings& settings) {
     return std::make_unique<VideoFile>(
-        path, EncoderSettings{settings.preset, settings.crf, settings.fps, settings.overwrite});
+        path, EncoderSettings{settings.preset, settings.crf, settings.fps, settings.overwrite,
+                              settings.give_up});
 }
 
 }  // namespace

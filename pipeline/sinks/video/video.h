@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,8 @@ struct VideoSettings {
     bool events = false;  ///< left of the intensity, where frames have Frame::event_preview; in GIF
                           ///< grey: ON light, OFF dark
     ShownPart part = {};  ///< that frames show
+    /// Asked while a pipe waits for its reader: true gives up. May be empty.
+    std::function<bool()> give_up = {};
 };
 
 /// "FFmpeg 5.1.6", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,7 @@ struct EncoderSettings {
     int crf = 18;
     double fps = 30;  ///< nominal, for the last frame's length
     bool overwrite = false;
+    std::function<bool()> give_up = {};  ///< as OutputOptions has it
 };
 
 /// Times are rounded to what the kind of file knows; a frame that would fall on the one before
