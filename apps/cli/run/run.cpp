@@ -23,9 +23,11 @@ namespace eventide::app {
 namespace {
 
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
-                                            ColourFilter colours, const OutputOptions& growing) {
+                                            ColourFilter colours, const OutputOptions& growing,
+                                            std::function<void()> reader_left) {
     if (settings.record.empty()) return nullptr;
-    return std::make_unique<RecordedSource>(source, settings.record, colours, growing);
+    return std::make_unique<RecordedSource>(source, settings.record, colours, growing,
+                                            std::move(reader_left));
 }
 
 SensorPixels size_of(const Source& source) {
@@ -36,7 +38,8 @@ SensorPixels size_of(const Source& source) {
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
                                          ColourFilter colours, EventsOut::Limit from,
                                          EventsOut::Limit to, EventFilter* filter,
-                                         const OutputOptions& growing) {
+                                         const OutputOptions& growing,
+                                         std::function<void()> reader_left) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -44,9 +47,9 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
     header.colour_filter = colours;
-    return std::make_unique<EventsOut>(filter,
-                                       open_event_target(settings.events_out, growing, header),
-                                       std::move(from), std::move(to), colours);
+    return std::make_unique<EventsOut>(
+        filter, open_event_target(settings.events_out, growing, header), std::move(from),
+        std::move(to), colours, std::move(reader_left));
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -152,6 +155,12 @@ void Run::go_to_begin() {
     is_stream_ = format == nullptr || format->open_path == nullptr;
 }
 
+std::function<void()> Run::stop_without_reader_of(const std::string& output) {
+    return [this, &output] {
+        if (!outputs_->reader_left(output)) pipeline_->stop();
+    };
+}
+
 void Run::open_outputs() {
     const OutputOptions growing{.overwrite = settings_.overwrite,
                                 .appears = Appears::growing,
@@ -159,13 +168,14 @@ void Run::open_outputs() {
     readers_.wait(growing.give_up);
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
-    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
+    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing,
+                            stop_without_reader_of(settings_.record));
     const auto from = [this] {
         return pipeline_->clock_began_anew() ? std::nullopt : span_.frames_from;
     };
     events_out_ = events_out_of(
         settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
-        filter_.get(), growing);
+        filter_.get(), growing, stop_without_reader_of(settings_.events_out));
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
         if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal

@@ -47,6 +47,7 @@ private:
     std::function<bool()> give_up_waiting();
     void go_to_begin();
     void open_outputs();
+    std::function<void()> stop_without_reader_of(const std::string& output);
     void make_pipeline();
     int report(const RunProgress& end) const;
     Source& source();
@@ -78,6 +79,7 @@ private:
     const double speed_;
     StartWatch start_;   // until run()
     HeldPipes readers_;  // of outputs, until those are open
+    const std::shared_ptr<OpenOutputs> outputs_ = std::make_shared<OpenOutputs>();
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;

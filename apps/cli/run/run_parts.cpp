@@ -47,7 +47,9 @@ SinkPlan Run::sink_plan() {
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
-    plan.writes_data = !settings_.record.empty() || !settings_.events_out.empty();
+    plan.outputs = outputs_;
+    plan.data_outputs =
+        std::size_t(!settings_.record.empty()) + std::size_t(!settings_.events_out.empty());
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);

@@ -48,6 +48,9 @@ public:
     /// that failed it only closes.
     void finish();
 
+    /// False once the reader of a pipe went away: what is written goes nowhere.
+    bool is_read() const { return !file_->reader_gone(); }
+
 private:
     void open_encoder(const cv::Mat& image);
     void fill_frame(const cv::Mat& image);
