@@ -178,8 +178,9 @@ void Run::open_outputs() {
         filter_.get(), growing, stop_without_reader_of(settings_.events_out));
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
-        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
         create_folder(settings_.states_out);
+        states_folder_.take(settings_.states_out);
+        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
     }
     stats_ = stats_of(settings_, growing);
     readers_.let_go();
