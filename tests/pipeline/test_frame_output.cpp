@@ -274,7 +274,6 @@ TEST(FrameOutput, ChangesItsRateWhileItRuns) {
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }
 
-/// A renderer that can see as far as it is told.
 TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
     Ending e(0);
     e.give(0);
@@ -287,6 +286,52 @@ TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
     EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 35, 40}));
     for (const auto& seen : e.sink.seen) EXPECT_EQ(std::int64_t(seen.index) * 5, seen.t_us);
     EXPECT_EQ(e.counters.present.skipped_frames.value(), 3U);
+}
+
+TEST(FrameOutput, OfALiveSourceRendersEverySecondFrameWhereThatIsAskedFor) {
+    ToyRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .live = true, .halvings = 1}, [] { return 0; },
+        stop, counters, keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(20)};
+    output.take(encoded);
+    EXPECT_EQ(sink.count, 3U) << "of 0, 5, 10, 15 and 20 us";
+}
+
+/// A sink before which somebody looks at each frame for an hour.
+class HoldingSink final : public Sink {
+public:
+    void write(const Frame& frame) override { arrived.push_back(frame.arrived); }
+    HostTime::duration held() const override { return std::chrono::hours{1}; }
+
+    std::vector<HostTime> arrived;
+};
+
+TEST(FrameOutput, LatencyCountsFromTheNewestDataAndWithoutPauses) {
+    ToyRenderer renderer;
+    HoldingSink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {100'000, 1}}, [] { return 0; }, stop, counters, keeper);
+    const HostTime begun = std::chrono::steady_clock::now();
+    const std::vector<HostTime> arrived{begun, begun + std::chrono::microseconds{10}};
+    for (int k = 0; k < 2; ++k) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(10 * k + 1), from_us(10 * k + 10)};
+        encoded.latent.arrived = arrived[std::size_t(k)];
+        output.take(encoded);
+    }
+    EXPECT_EQ(sink.arrived, arrived);
+    EXPECT_EQ(counters.snapshot().latency.max.count(), 0) << "frames came an hour before that";
 }
 
 TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
