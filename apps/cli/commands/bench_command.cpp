@@ -4,6 +4,7 @@
 #include "apps/bench/stage_table.h"
 #include "apps/cli/bench/bench_table.h"
 #include "apps/cli/bench/report.h"
+#include "apps/cli/commands/command_files.h"
 #include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
@@ -11,7 +12,6 @@
 #include "apps/cli/settings/words.h"
 #include "apps/cli/version.h"
 #include "src/core/error.h"
-#include "src/io/output_file.h"
 #include "src/simulate/presets.h"
 
 #include <spdlog/spdlog.h>
@@ -304,7 +304,7 @@ int BenchCommand::run(Program& program) {
         print_bench_table(rows, table);
     }
     refuse_partial(program);
-    if (!json_.empty()) write_file(json_, bench_json(stages, activity, peaks, rows), overwrite_);
+    write_result(json_, bench_json(stages, activity, peaks, rows), overwrite_, program.signals);
     if (!plots_.empty())
         spdlog::info("{}", write_plot(bench_plot(rows), plots_, overwrite_).string());
     return exit_done;
