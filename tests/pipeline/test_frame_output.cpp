@@ -334,6 +334,33 @@ TEST(FrameOutput, LatencyCountsFromTheNewestDataAndWithoutPauses) {
     EXPECT_EQ(counters.snapshot().latency.max.count(), 0) << "frames came an hour before that";
 }
 
+class PreviewSink final : public Sink {
+public:
+    void write(const Frame& frame) override { shown.push_back(frame.event_preview(0, 0)); }
+    std::vector<float> shown;
+};
+
+TEST(FrameOutput, EveryFrameOfAWindowShowsThatWindowsEvents) {
+    ToyRenderer renderer;
+    PreviewSink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .lookahead = 1}, [] { return 0; }, stop, counters,
+        keeper);
+    for (int k = 0; k < 4; ++k) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
+        encoded.event_preview = Array2<float>(kToyHeight, kToyWidth);
+        encoded.event_preview(0, 0) = float(k);
+        output.take(encoded);
+    }
+    output.finish();
+    EXPECT_EQ(sink.shown, (std::vector<float>{0, 0, 0, 1, 1, 2, 2, 3, 3}));
+}
+
 TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
     Ending e(2);
     for (int k = 0; k < 4; ++k) e.give(10 * k);
