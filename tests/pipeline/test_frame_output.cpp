@@ -159,6 +159,23 @@ TEST(FrameOutput, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
     }
 }
 
+TEST(FrameOutput, ALiveSourceMayBeSilentForHours) {
+    ToyRenderer renderer;
+    ToySink sink;
+    sink.keeps = false;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {1'000'000, 1}, .live = true, .halvings = 10}, [] { return 0; },
+        stop, counters, keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(SilenceGuard::kMost + 1)};
+    EXPECT_TRUE(output.take(encoded));
+    EXPECT_GT(sink.count, 0U);
+}
+
 /// A sink somebody watches from time to time.
 class WatchedSink final : public Sink {
 public:
