@@ -212,6 +212,21 @@ TEST(Pipeline, WindowsThatWaitGoOnWhenThereIsRoomThoughNothingMoreComes) {
     EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
 }
 
+TEST(Pipeline, WindowsThatWaitWhenTheSourceEndsAreStillEncoded) {
+    constexpr std::size_t kPackets = 20;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers.grids = 1;
+    settings.latency = std::chrono::hours{1};
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
+    line.encoder.before_encode = [&] {
+        while (line.made().snapshot().events <= kPackets) std::this_thread::yield();
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
+}
+
 TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
     constexpr std::size_t kPackets = 400, kReleasedAt = 390;
     PipelineSettings settings = quick_settings();
