@@ -351,6 +351,25 @@ TEST(FrameOutput, LatencyCountsFromTheNewestDataAndWithoutPauses) {
     EXPECT_EQ(counters.snapshot().latency.max.count(), 0) << "frames came an hour before that";
 }
 
+TEST(FrameOutput, LearnsWhatAFrameTakesAndRendersNoneThatWouldBeLateButTheNewest) {
+    ToyRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{std::chrono::nanoseconds{1}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .live = true}, [] { return 0; }, stop, counters,
+        keeper);
+    for (const std::int64_t begin_us : {0, 100}) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(begin_us + 100)};
+        output.take(encoded);
+    }
+    EXPECT_EQ(sink.count, 21U + 1U) << "as yet nothing was known of the first window's";
+    EXPECT_EQ(sink.seen.back().t_us, 200);
+}
+
 class PreviewSink final : public Sink {
 public:
     void write(const Frame& frame) override { shown.push_back(frame.event_preview(0, 0)); }

@@ -212,6 +212,28 @@ TEST(Pipeline, WindowsThatWaitGoOnWhenThereIsRoomThoughNothingMoreComes) {
     EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
 }
 
+TEST(Pipeline, LearnsWhatAWindowTakesAndHandsOnNoneThatWouldBeLate) {
+    constexpr std::size_t kPackets = 20;
+    PipelineSettings settings = quick_settings();
+    settings.frames_from = from_us(1'000'000);  // none
+    settings.buffers.grids = 16;
+    settings.latency = std::chrono::nanoseconds{1};  // any window that waits would be late
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
+    const auto wait_until = [&](auto counter, std::uint64_t number) {
+        while (line.made().snapshot().*counter < number) std::this_thread::yield();
+    };
+    line.source.before_read = [&](std::size_t packet) {
+        wait_until(&Snapshot::events, packet);
+        if (packet == 2) wait_until(&Snapshot::encoded, 1);
+    };
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 2) wait_until(&Snapshot::events, kPackets + 1);
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    EXPECT_LE(line.snapshot().encoded, 5U);
+}
+
 TEST(Pipeline, WindowsThatWaitWhenTheSourceEndsAreStillEncoded) {
     constexpr std::size_t kPackets = 20;
     PipelineSettings settings = quick_settings();
