@@ -103,6 +103,9 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
 void finish_standard_output() {
     errno = 0;
     const bool written = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    // Why an earlier part failed was told nobody: one more byte fails for the same reason.
+    if (!written && errno == 0) [[maybe_unused]]
+        const auto count = ::write(STDOUT_FILENO, "\n", 1);
     const int error = errno;
     pollfd reader{STDOUT_FILENO, 0, 0};
     const bool gone =

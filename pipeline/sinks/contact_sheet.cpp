@@ -142,7 +142,10 @@ void ContactSheetSink::close() {
     std::vector<unsigned char> bytes;
     if (!encode_image(settings_.path.extension().string(), lay_out(rows), bytes))
         throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be encoded");
-    write_file(settings_.path, std::as_bytes(std::span{bytes}), settings_.overwrite);
+    OutputFile file{settings_.path,
+                    {.overwrite = settings_.overwrite, .give_up = settings_.give_up}};
+    file.write(std::as_bytes(std::span{bytes}));
+    file.close();
 }
 
 }  // namespace eventide

@@ -23,6 +23,8 @@ struct ContactSheetSettings {
     std::function<void(SensorTime, const Window&, cv::Mat&)> draw_truth = {};
     std::string truth_caption = "truth";  ///< what those images are: a sensor's own are not truth
     ShownPart part = {};                  ///< that frames show
+    /// Asked while a pipe waits for its reader: true gives up. May be empty.
+    std::function<bool()> give_up = {};
 };
 
 /// An exposure and a read-out, and an image more, which may be the nearer one.

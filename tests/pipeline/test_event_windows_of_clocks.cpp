@@ -133,6 +133,16 @@ TEST(EventWindows, OfALiveSourceBeginAnewWhereItsClockLeaps) {
     EXPECT_EQ(windows_of(3'600'000 * kMs, 0, true).first, 1U);
 }
 
+TEST(EventWindows, OfALiveSourceThatWasSilentBeginAnewWhereItsClockLeapsLater) {
+    constexpr std::int64_t kMs = 1000, kHour = 3'600'000 * kMs;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::event, kHour), kHour);
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 0U);
+    b.give(record(ToyKind::event, 3 * kHour), kHour + kMs);
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 1U) << "no time had passed";
+}
+
 TEST(EventWindows, WaitForWhatWasOnItsWayForLong) {
     constexpr std::int64_t kMs = 1000;
     Beginning b(true, 10 * kMs);

@@ -159,6 +159,23 @@ TEST(FrameOutput, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
     }
 }
 
+TEST(FrameOutput, ALiveSourceMayBeSilentForHours) {
+    ToyRenderer renderer;
+    ToySink sink;
+    sink.keeps = false;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {1'000'000, 1}, .live = true, .halvings = 10}, [] { return 0; },
+        stop, counters, keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(SilenceGuard::kMost + 1)};
+    EXPECT_TRUE(output.take(encoded));
+    EXPECT_GT(sink.count, 0U);
+}
+
 /// A sink somebody watches from time to time.
 class WatchedSink final : public Sink {
 public:
@@ -274,7 +291,6 @@ TEST(FrameOutput, ChangesItsRateWhileItRuns) {
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }
 
-/// A renderer that can see as far as it is told.
 TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
     Ending e(0);
     e.give(0);
@@ -287,6 +303,98 @@ TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
     EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 35, 40}));
     for (const auto& seen : e.sink.seen) EXPECT_EQ(std::int64_t(seen.index) * 5, seen.t_us);
     EXPECT_EQ(e.counters.present.skipped_frames.value(), 3U);
+}
+
+TEST(FrameOutput, OfALiveSourceRendersEverySecondFrameWhereThatIsAskedFor) {
+    ToyRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .live = true, .halvings = 1}, [] { return 0; },
+        stop, counters, keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(20)};
+    output.take(encoded);
+    EXPECT_EQ(sink.count, 3U) << "of 0, 5, 10, 15 and 20 us";
+}
+
+/// A sink before which somebody looks at each frame for an hour.
+class HoldingSink final : public Sink {
+public:
+    void write(const Frame& frame) override { arrived.push_back(frame.arrived); }
+    HostTime::duration held() const override { return std::chrono::hours{1}; }
+
+    std::vector<HostTime> arrived;
+};
+
+TEST(FrameOutput, LatencyCountsFromTheNewestDataAndWithoutPauses) {
+    ToyRenderer renderer;
+    HoldingSink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {100'000, 1}}, [] { return 0; }, stop, counters, keeper);
+    const HostTime begun = std::chrono::steady_clock::now();
+    const std::vector<HostTime> arrived{begun, begun + std::chrono::microseconds{10}};
+    for (int k = 0; k < 2; ++k) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(10 * k + 1), from_us(10 * k + 10)};
+        encoded.latent.arrived = arrived[std::size_t(k)];
+        output.take(encoded);
+    }
+    EXPECT_EQ(sink.arrived, arrived);
+    EXPECT_EQ(counters.snapshot().latency.max.count(), 0) << "frames came an hour before that";
+}
+
+TEST(FrameOutput, LearnsWhatAFrameTakesAndRendersNoneThatWouldBeLateButTheNewest) {
+    ToyRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{std::chrono::nanoseconds{1}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .live = true}, [] { return 0; }, stop, counters,
+        keeper);
+    for (const std::int64_t begin_us : {0, 100}) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(begin_us + 100)};
+        output.take(encoded);
+    }
+    EXPECT_EQ(sink.count, 21U + 1U) << "as yet nothing was known of the first window's";
+    EXPECT_EQ(sink.seen.back().t_us, 200);
+}
+
+class PreviewSink final : public Sink {
+public:
+    void write(const Frame& frame) override { shown.push_back(frame.event_preview(0, 0)); }
+    std::vector<float> shown;
+};
+
+TEST(FrameOutput, EveryFrameOfAWindowShowsThatWindowsEvents) {
+    ToyRenderer renderer;
+    PreviewSink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .lookahead = 1}, [] { return 0; }, stop, counters,
+        keeper);
+    for (int k = 0; k < 4; ++k) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
+        encoded.event_preview = Array2<float>(kToyHeight, kToyWidth);
+        encoded.event_preview(0, 0) = float(k);
+        output.take(encoded);
+    }
+    output.finish();
+    EXPECT_EQ(sink.shown, (std::vector<float>{0, 0, 0, 1, 1, 2, 2, 3, 3}));
 }
 
 TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {

@@ -89,6 +89,20 @@ TEST(Pipeline, KeepsTheFirstErrorOfTwo) {
     }
 }
 
+TEST(Pipeline, WritesNoFrameAfterASinkHasFailed) {
+    for (const bool threaded : {true, false}) {
+        PipelineSettings settings = quick_settings();
+        settings.lookahead = 2;  // frames of two windows still wait at the end
+        PipelineUnderTest line(one_frame_per_packet(20), settings);
+        int asked = 0;
+        line.sink.before_write = [&](auto) {
+            if (++asked == 3) throw std::runtime_error("disk is full");
+        };
+        EXPECT_THROW(threaded ? line.run() : line.run_sequential(), std::runtime_error);
+        EXPECT_EQ(asked, 3) << (threaded ? "threaded" : "sequential");
+    }
+}
+
 /// As an error of Python, which knows the functions that it went through and what they hold.
 struct HoldingError final : std::runtime_error {
     explicit HoldingError(std::shared_ptr<int> what)

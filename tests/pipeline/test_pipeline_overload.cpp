@@ -156,6 +156,99 @@ TEST(Pipeline, ThatACameraWasOpenedAgainIsNotLostWithAPacket) {
     EXPECT_EQ(source.told, 1);
 }
 
+/// Passes on everything, and waits with the first packet's events.
+struct WaitingFilter final : EventFilter {
+    void process(std::vector<Event>&) override {
+        if (calls++ == 0) goes_on.acquire();
+        if (calls == 2) second_packet.release();
+    }
+
+    int calls = 0;
+    std::binary_semaphore goes_on{0}, second_packet{0};
+};
+
+TEST(Pipeline, APacketOfALiveSourceIsNotLostWhereABufferIsFreeByTheTimeItIsThere) {
+    PipelineSettings settings = quick_settings();
+    settings.buffers.packets = 2;
+    PipelineUnderTest line(one_frame_per_packet(2), settings, true);
+    WaitingFilter filter;
+    line.filter = &filter;
+    line.source.before_read = [&](std::size_t packet) {
+        if (packet != 2) return;  // both buffers are lent
+        filter.goes_on.release();
+        filter.second_packet.acquire();
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    EXPECT_EQ(line.snapshot().events, 3U);
+}
+
+TEST(Pipeline, WindowsThatWaitGoOnWhenThereIsRoomThoughNothingMoreComes) {
+    constexpr std::size_t kPackets = 20;
+    std::vector<std::vector<std::byte>> packets = one_frame_per_packet(kPackets);
+    packets.resize(packets.size() + 2);  // timeouts
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers.grids = 2;
+    settings.latency = std::chrono::hours{1};
+    PipelineUnderTest line(packets, settings, true);
+    std::binary_semaphore released{0};
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 1) released.acquire();
+    };
+    const auto wait_until = [&](auto counter, std::uint64_t number) {
+        while (line.made().snapshot().*counter < number) std::this_thread::yield();
+    };
+    line.source.before_read = [&](std::size_t packet) {
+        if (packet == kPackets + 1) {
+            wait_until(&Snapshot::events, kPackets + 1);
+            released.release();
+            wait_until(&Snapshot::encoded, 2);
+        }
+        if (packet == kPackets + 2) wait_until(&Snapshot::encoded, 3);
+    };
+    line.run();
+    EXPECT_GT(line.snapshot().merged_windows, kPackets - 5);
+    EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
+}
+
+TEST(Pipeline, LearnsWhatAWindowTakesAndHandsOnNoneThatWouldBeLate) {
+    constexpr std::size_t kPackets = 20;
+    PipelineSettings settings = quick_settings();
+    settings.frames_from = from_us(1'000'000);  // none
+    settings.buffers.grids = 16;
+    settings.latency = std::chrono::nanoseconds{1};  // any window that waits would be late
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
+    const auto wait_until = [&](auto counter, std::uint64_t number) {
+        while (line.made().snapshot().*counter < number) std::this_thread::yield();
+    };
+    line.source.before_read = [&](std::size_t packet) {
+        wait_until(&Snapshot::events, packet);
+        if (packet == 2) wait_until(&Snapshot::encoded, 1);
+    };
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 2) wait_until(&Snapshot::events, kPackets + 1);
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    EXPECT_LE(line.snapshot().encoded, 5U);
+}
+
+TEST(Pipeline, WindowsThatWaitWhenTheSourceEndsAreStillEncoded) {
+    constexpr std::size_t kPackets = 20;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers.grids = 1;
+    settings.latency = std::chrono::hours{1};
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
+    line.encoder.before_encode = [&] {
+        while (line.made().snapshot().events <= kPackets) std::this_thread::yield();
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
+}
+
 TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
     constexpr std::size_t kPackets = 400, kReleasedAt = 390;
     PipelineSettings settings = quick_settings();

@@ -1,4 +1,5 @@
 // Folders that are written to: what is replaced in them is an earlier run's alone.
+#include "src/io/file_lock.h"
 #include "tests/system/outputs_test.h"
 
 #include <filesystem>
@@ -97,6 +98,15 @@ TEST_F(Outputs, AFolderOfStatesLosesAnEarlierRunsAndNothingElse) {
                                   "--states-at", "100ms", "--states-at", "9s"});
     EXPECT_EQ(late.exit_code, 2);
     EXPECT_NE(late.error.find("--states-at 9s: expected a time before"), std::string::npos);
+}
+
+TEST_F(Outputs, TwoRunsDoNotMixTheirStates) {
+    fs::create_directories(temp_ / "s");
+    FolderLock of_another_run;
+    of_another_run.take(temp_ / "s");
+    expect_refused({"run", "rec.aedat4", "--frames", "ignore", "--states-out", "s/", "--states-at",
+                    "100ms", "--overwrite"},
+                   "s/: expected a folder that no other run writes to");
 }
 
 TEST_F(Outputs, ASimulatedFolderIsReplacedByAnotherOnly) {

@@ -78,7 +78,8 @@ TEST_F(Resources, OneIsStandardOutputThatCannotBeWritten) {
           "--help", "run --help", "--version", "--default-config"}) {
         const Result full = in_shell(std::string{"eventide "} + command + " > /dev/full");
         EXPECT_EQ(full.exit_code, 1) << command << "\n" << full.error;
-        EXPECT_NE(full.error.find("standard output: cannot be written"), std::string::npos)
+        EXPECT_NE(full.error.find("standard output: cannot be written: No space left on device"),
+                  std::string::npos)
             << command << "\n"
             << full.error;
         EXPECT_EQ(in_shell(std::string{"eventide "} + command + " | true").exit_code, 0)

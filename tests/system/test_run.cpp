@@ -6,8 +6,14 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <climits>
 #include <filesystem>
 #include <fstream>
 
@@ -300,6 +306,30 @@ TEST_F(Run, ASourceThatHasNotBegunIsAliveForAServiceManager) {
     while (process.running() && socket.next() != "WATCHDOG=1") continue;
     process.signal(SIGTERM);
     EXPECT_EQ(process.wait().exit_code, 0);
+}
+
+TEST_F(Run, WhatWaitsForTheReaderOfARecordingIsAliveForAServiceManager) {
+    const std::string pipe = temp_ / "all.aedat4";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    ManagerSocket socket{temp_ / "notify"};
+    Process process = start(
+        {"run", "sim:demo?size=32x24", "--out", "null", "--record", pipe},
+        {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}}});
+    const int reader = ::open(pipe.c_str(), O_RDONLY);
+    const int size = ::fcntl(reader, F_GETPIPE_SZ);
+    for (int waiting = 0; process.running() && waiting + PIPE_BUF < size;)
+        ::ioctl(reader, FIONREAD, &waiting);
+    // What has come until then is worked on for a while; a status comes once a second.
+    int statuses = 0, alive = 0;
+    while (process.running() && statuses < 4) {
+        const std::string message = socket.next();
+        statuses += message.starts_with("STATUS=") ? 1 : 0;
+        alive += statuses == 3 && message == "WATCHDOG=1" ? 1 : 0;
+    }
+    EXPECT_GT(alive, 0);
+    process.signal(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 0);
+    ::close(reader);
 }
 
 TEST_F(Run, TellsAServiceManagerOfItsBeginningItsLifeAndItsEnd) {

@@ -76,12 +76,14 @@ TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
 }
 
 TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
-    const std::string pipe = temp_ / "events.txt";
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const std::string pipe = temp_ / "events.txt", video = temp_ / "video.mp4";
+    for (const std::string& made : {pipe, video}) ASSERT_EQ(mkfifo(made.c_str(), 0600), 0);
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", recording(), "--out", "null", "--events-out", pipe},
           {"run", recording(), "--out", "null", "--stats", pipe},
+          {"run", recording(), "--out", "null", "--state-out", pipe},
           {"run", recording(), "--out", "gray8:" + pipe},
+          {"run", recording(), "--out", video},
           {"convert", recording(), pipe},
           {"simulate", "--size", "64x48", "--out", pipe}}) {
         Process process = start(command);
@@ -166,6 +168,39 @@ TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.error.find("error"), std::string::npos) << result.error;
+}
+
+TEST_F(Signals, EveryPipeWhoseReaderGoesAwayEndsTheRunOrIsOneOutputLess) {
+    const std::string record = temp_ / "all.aedat4", events = temp_ / "events.txt",
+                      video = temp_ / "video.mp4";
+    for (const std::string& pipe : {record, events, video})
+        ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const auto leave = [](const std::string& pipe) {
+        const int reader = ::open(pipe.c_str(), O_RDONLY);
+        char byte = 0;
+        EXPECT_EQ(::read(reader, &byte, 1), 1);
+        ::close(reader);
+    };
+    for (const auto& [option, pipe] : {std::pair{std::string{"--record"}, record},
+                                       {std::string{"--events-out"}, events},
+                                       {std::string{"--out"}, video}}) {
+        Process alone = start({"run", kEndless, option, pipe, "--out", "null"});
+        leave(pipe);
+        const Result result = alone.wait();
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_NE(result.error.find(pipe + ": its reader went away\n"), std::string::npos)
+            << result.error;
+
+        Process with_others =
+            start({"run", kEndless, option, pipe, "--out", "gray8:-", "--overload", "skip"},
+                  {.output_to_pipe = true});
+        leave(pipe);
+        while (with_others.error_so_far().find("the run goes on") == std::string::npos)
+            ASSERT_EQ(with_others.read_output(kPixels).size(), kPixels) << pipe;
+        EXPECT_EQ(with_others.read_output(kPixels).size(), kPixels);
+        with_others.close_output();
+        EXPECT_EQ(with_others.wait().exit_code, 0) << "and ends with its last reader";
+    }
 }
 
 TEST_F(Signals, AConversionWhoseReaderGoesAwayDoesNotSayThatAllWasWritten) {

@@ -1,7 +1,9 @@
-// Inputs and outputs that are more than one file, named file by file.
+// Inputs and outputs that are more than one file, named file by file; and results that are one.
 #include "apps/cli/commands/command_files.h"
 
 #include "replay/ecd_folder.h"
+#include "src/core/error.h"
+#include "src/io/output_file.h"
 
 #include <string_view>
 
@@ -47,6 +49,17 @@ void name_run_folder(const std::string& option, const fs::path& folder,
     files.writes(option, folder / kRunRecord);
     for (const NumberedFiles& numbered : written.numbered)
         files.writes_all(option, folder / numbered.folder);
+}
+
+void write_result(const std::string& file, const std::string& text, bool overwrite,
+                  const Signals& signals) {
+    if (file.empty()) return;
+    OutputFile out{file,
+                   {.overwrite = overwrite, .give_up = [&signals] { return signals.stopping(); }}};
+    out.write(text);
+    out.close();
+    if (out.reader_gone() && signals.stopping())
+        throw Error(ErrorKind::failed, file + ": stopped before its reader had taken all of it");
 }
 
 }  // namespace eventide::app

@@ -7,7 +7,6 @@
 #include "apps/cli/settings/model_path.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
-#include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
 
@@ -20,14 +19,6 @@
 namespace eventide::app {
 
 namespace {
-
-/// To a file, or to standard output for "-".
-void write_text(const std::string& file, const std::string& text, bool overwrite) {
-    if (file == "-")
-        std::cout << text;
-    else if (!file.empty())
-        write_file(file, text, overwrite);
-}
 
 std::optional<double> seconds_of(const std::string& text, const char* open) {
     if (text == open) return std::nullopt;
@@ -172,12 +163,12 @@ void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const 
         if (!is_report_figure(figure)) write_plots(simulated_figure(figure, what, how));
 }
 
-void EvaluateCommand::write(const EvaluateReport& report) const {
+void EvaluateCommand::write(const EvaluateReport& report, const Signals& signals) const {
     if (json_ != "-" && csv_ != "-" && frame_csv_ != "-")
         std::cout << printable(text_table(report), Lines::keep);
-    write_text(json_, json(report) + "\n", overwrite_);
-    write_text(csv_, csv(report), overwrite_);
-    write_text(frame_csv_, frame_csv(report), overwrite_);
+    write_result(json_, json(report) + "\n", overwrite_, signals);
+    write_result(csv_, csv(report), overwrite_, signals);
+    write_result(frame_csv_, frame_csv(report), overwrite_, signals);
 }
 
 void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
@@ -238,7 +229,7 @@ int EvaluateCommand::run(Program& program) {
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);
-    write(report);
+    write(report, program.signals);
     for (const std::string& figure : figures_)
         if (is_report_figure(figure)) write_plots(report_figure(figure, report));
     if (!calibrated_.empty()) calibrate(report, settings);

@@ -43,7 +43,7 @@ private:
     void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;
     void make_simulated_figures(const EvaluateSettings& how) const;
-    void write(const EvaluateReport& report) const;
+    void write(const EvaluateReport& report, const Signals& signals) const;
     void calibrate(const EvaluateReport& report, const EvaluateSettings& how) const;
 
     std::vector<std::string> inputs_;

@@ -1,6 +1,7 @@
 // eventide stress: hard cases through the whole pipeline.
 #include "apps/cli/commands/stress_command.h"
 
+#include "apps/cli/commands/command_files.h"
 #include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
@@ -11,7 +12,6 @@
 #include "apps/evaluate/plot.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
-#include "src/io/output_file.h"
 #include "src/model/model_trial.h"
 
 #include <fnmatch.h>
@@ -252,7 +252,7 @@ int StressCommand::run_cases(Program& program) {
             rows.push_back(std::move(row));
         }
     refuse_partial(program);
-    if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
+    write_result(json_, json_text(json_of(rows)) + "\n", overwrite_, program.signals);
     const auto failed =
         std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.passed; });
     const auto left_out =
@@ -292,7 +292,7 @@ int StressCommand::run_soak(Program& program) {
             spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
     }
     refuse_partial(program);
-    if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
+    write_result(json_, json_text(json_of(rows)) + "\n", overwrite_, program.signals);
     const bool passed =
         std::ranges::all_of(rows, [](const StressRow& row) { return row.result.passed; });
     return passed ? exit_done : int(ErrorKind::failed);

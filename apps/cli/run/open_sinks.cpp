@@ -49,7 +49,8 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
                       settings.video_preset, settings.video_crf, plan.fps, settings.slow,
-                      settings.events, shown_part(settings, plan.sensor)});
+                      settings.events, shown_part(settings, plan.sensor), plan.questions.stopping,
+                      [path, outputs = plan.outputs] { return outputs->reader_left(path); }});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
@@ -67,13 +68,7 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.live = plan.live;
     stream.give_up = plan.questions.stopping;
     const std::string name = path == "-" ? "standard output" : path;
-    stream.reader_left = [name, outputs = plan.outputs] {
-        --*outputs;
-        spdlog::log(*outputs > 0 ? spdlog::level::warn : spdlog::level::info,
-                    "{}: its reader went away{}", name,
-                    *outputs > 0 ? "; the run goes on for the other outputs" : "");
-        return *outputs > 0;
-    };
+    stream.reader_left = [name, outputs = plan.outputs] { return outputs->reader_left(name); };
     if (!plan.constant_rate && is_y4m(format))
         spdlog::warn(
             "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "
@@ -182,6 +177,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.overwrite = settings.overwrite;
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
+    sheet.give_up = plan.questions.stopping;
     sheet.truth_caption = plan.reference_caption;
     sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
     // Beside frames in colour, else in grey.
@@ -266,9 +262,9 @@ bool is_http(const std::string& sink) {
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
-    *plan.outputs =
-        std::ranges::count_if(settings.out, [](const auto& out) { return out != "null"; }) +
-        (plan.writes_data ? 1 : 0);
+    plan.outputs->expect(plan.data_outputs +
+                         std::size_t(std::ranges::count_if(
+                             settings.out, [](const auto& out) { return out != "null"; })));
     std::vector<std::unique_ptr<Sink>> plain, changed;
     AdjustSettings adjust = settings.adjust;
     adjust.unsharp = float(settings.unsharp);

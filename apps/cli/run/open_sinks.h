@@ -1,6 +1,7 @@
 // SINK on the command line becomes a sink of frames.
 #pragma once
 
+#include "apps/cli/run/open_outputs.h"
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/calibration/undistortion.h"
@@ -34,13 +35,13 @@ struct SinkPlan {
     double speed = 1;                                   ///< of the recording, for the window
     Size sensor;                                        ///< px
     bool live = false;                                  ///< the source is a camera
-    bool writes_data = false;                           ///< --record or --events-out
+    std::size_t data_outputs = 0;                       ///< of --record and --events-out
     std::optional<UndistortionPlan> undistortion = {};  ///< empty: not asked for
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;
-    /// How many there are besides `null` whose readers have not gone away. Set by open_sinks().
-    std::shared_ptr<std::ptrdiff_t> outputs = std::make_shared<std::ptrdiff_t>(0);
+    /// All but `null`: counted by open_sinks().
+    std::shared_ptr<OpenOutputs> outputs = std::make_shared<OpenOutputs>();
     std::vector<HttpControl> controls = {};  ///< of the live page
 };
 

@@ -5,7 +5,6 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
-#include "apps/cli/run/state/run_state.h"
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
 #include "pipeline/first_error.h"
@@ -24,9 +23,11 @@ namespace eventide::app {
 namespace {
 
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
-                                            ColourFilter colours, const OutputOptions& growing) {
+                                            ColourFilter colours, const OutputOptions& growing,
+                                            std::function<void()> reader_left) {
     if (settings.record.empty()) return nullptr;
-    return std::make_unique<RecordedSource>(source, settings.record, colours, growing);
+    return std::make_unique<RecordedSource>(source, settings.record, colours, growing,
+                                            std::move(reader_left));
 }
 
 SensorPixels size_of(const Source& source) {
@@ -37,7 +38,8 @@ SensorPixels size_of(const Source& source) {
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
                                          ColourFilter colours, EventsOut::Limit from,
                                          EventsOut::Limit to, EventFilter* filter,
-                                         const OutputOptions& growing) {
+                                         const OutputOptions& growing,
+                                         std::function<void()> reader_left) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -45,9 +47,9 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
     header.colour_filter = colours;
-    return std::make_unique<EventsOut>(filter,
-                                       open_event_target(settings.events_out, growing, header),
-                                       std::move(from), std::move(to), colours);
+    return std::make_unique<EventsOut>(
+        filter, open_event_target(settings.events_out, growing, header), std::move(from),
+        std::move(to), colours, std::move(reader_left));
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -153,26 +155,32 @@ void Run::go_to_begin() {
     is_stream_ = format == nullptr || format->open_path == nullptr;
 }
 
+std::function<void()> Run::stop_without_reader_of(const std::string& output) {
+    return [this, &output] {
+        if (!outputs_->reader_left(output)) pipeline_->stop();
+    };
+}
+
 void Run::open_outputs() {
-    const OutputOptions growing{
-        .overwrite = settings_.overwrite, .appears = Appears::growing, .give_up = [this] {
-            start_.goes_on();
-            return program_.signals.stopping();
-        }};
+    const OutputOptions growing{.overwrite = settings_.overwrite,
+                                .appears = Appears::growing,
+                                .give_up = [this] { return gives_up(); }};
     readers_.wait(growing.give_up);
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
-    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
+    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing,
+                            stop_without_reader_of(settings_.record));
     const auto from = [this] {
         return pipeline_->clock_began_anew() ? std::nullopt : span_.frames_from;
     };
     events_out_ = events_out_of(
         settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
-        filter_.get(), growing);
+        filter_.get(), growing, stop_without_reader_of(settings_.events_out));
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
-        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
         create_folder(settings_.states_out);
+        states_folder_.take(settings_.states_out);
+        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
     }
     stats_ = stats_of(settings_, growing);
     readers_.let_go();
@@ -222,7 +230,7 @@ Snapshot Run::counters() const {
         now.camera = camera->counters();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
-    now.waits = waits_.value();
+    now.waits = waits_;
     if (!is_stream_)
         now.parsed_bytes =
             opened_.recording->position_bytes() + bytes_to_read_ - opened_.recording->size_bytes();
@@ -257,9 +265,7 @@ int Run::run() {
                   manager_,
                   quality};
     run_pipeline();
-    if (!settings_.state_out.empty())
-        write_safetensors(settings_.state_out, state_of(network_, colour_ ? &*colour_ : nullptr),
-                          settings_.overwrite);
+    if (!settings_.state_out.empty()) keep_last_state();
     return report(status.finish());
 }
 

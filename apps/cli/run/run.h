@@ -19,6 +19,7 @@
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
+#include "src/io/file_lock.h"
 #include "src/io/held_pipes.h"
 
 #include <atomic>
@@ -47,6 +48,7 @@ private:
     std::function<bool()> give_up_waiting();
     void go_to_begin();
     void open_outputs();
+    std::function<void()> stop_without_reader_of(const std::string& output);
     void make_pipeline();
     int report(const RunProgress& end) const;
     Source& source();
@@ -55,12 +57,14 @@ private:
     bool as_live() const { return live() || settings_.realtime; }
     double pace() const;
     RunQuality::Place quality_place() const;
+    bool gives_up();
     SinkPlan sink_plan();
     ModelRenderStage render_stage();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
     void resume();
     void keep_state(const PipelineState& memory);
+    void keep_last_state();
     void run_pipeline();
     bool wrote_all_data() const;
     RunProgress progress() const;
@@ -76,6 +80,7 @@ private:
     const double speed_;
     StartWatch start_;   // until run()
     HeldPipes readers_;  // of outputs, until those are open
+    const std::shared_ptr<OpenOutputs> outputs_ = std::make_shared<OpenOutputs>();
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;
@@ -108,8 +113,9 @@ private:
     LiveChanges changes_;
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::optional<Pipeline> pipeline_;
+    FolderLock states_folder_;
     std::size_t states_ = 0;                    // kept until now
-    Counter waits_;                             // Snapshot::waits; render thread
+    std::atomic<std::uint64_t> waits_{0};       // Snapshot::waits
     std::vector<std::unique_ptr<Sink>> sinks_;  // last: a page's threads ask the others
 };
 

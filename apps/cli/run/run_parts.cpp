@@ -32,6 +32,13 @@ std::vector<std::string> without_token(std::vector<std::string> arguments) {
 
 }  // namespace
 
+/// Asked while the reader of a pipe, or the end of a viewer's pause, is waited for. Thread: any.
+bool Run::gives_up() {
+    ++waits_;
+    start_.goes_on();
+    return program_.signals.stopping();
+}
+
 SinkPlan Run::sink_plan() {
     SinkPlan plan;
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
@@ -40,15 +47,13 @@ SinkPlan Run::sink_plan() {
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
-    plan.writes_data = !settings_.record.empty() || !settings_.events_out.empty();
+    plan.outputs = outputs_;
+    plan.data_outputs =
+        std::size_t(!settings_.record.empty()) + std::size_t(!settings_.events_out.empty());
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
-    plan.questions.stopping = [this] {
-        waits_.add();
-        start_.goes_on();
-        return program_.signals.stopping();
-    };
+    plan.questions.stopping = [this] { return gives_up(); };
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
     plan.questions.run_json = [this] { return run_json(); };
     if (opened_.paced != nullptr)

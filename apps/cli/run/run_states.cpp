@@ -4,6 +4,10 @@
 #include "apps/cli/run/state/state_folder.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
+#include "src/io/output_file.h"
+#include "src/nn/safetensors.h"
+
+#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <optional>
@@ -49,6 +53,16 @@ void Run::keep_state(const PipelineState& memory) {
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
     write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
+}
+
+/// At the end of the run, which a pipe without a reader must not put off for ever.
+void Run::keep_last_state() {
+    OutputFile file{settings_.state_out,
+                    {.overwrite = settings_.overwrite, .give_up = [this] { return gives_up(); }}};
+    file.write(format_safetensors(state_of(network_, colour_ ? &*colour_ : nullptr)));
+    file.close();
+    if (file.reader_gone())
+        spdlog::warn("--state-out {}: its reader did not take all of it", settings_.state_out);
 }
 
 }  // namespace eventide::app

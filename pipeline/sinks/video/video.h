@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,11 @@ struct VideoSettings {
     bool events = false;  ///< left of the intensity, where frames have Frame::event_preview; in GIF
                           ///< grey: ON light, OFF dark
     ShownPart part = {};  ///< that frames show
+    /// Asked while a pipe waits for its reader: true gives up. May be empty.
+    std::function<bool()> give_up = {};
+    /// Told once that the reader of a pipe went away. Whether the run goes on for others. May be
+    /// empty: it ends.
+    std::function<bool()> reader_left = {};
 };
 
 /// "libavcodec 59.37.100", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.
@@ -53,8 +59,12 @@ public:
     void write(const Frame& frame) override;
     /// A file without a frame would not be a video: it is not left behind.
     void close() override;
+    bool wants_more() const override { return is_read() || goes_on_; }
+    bool is_watched() const override { return is_read(); }
 
 private:
+    bool is_read() const;
+    void note_reader();
     std::int64_t microseconds_to_show(SensorTime t);
 
     VideoSettings settings_;
@@ -63,6 +73,7 @@ private:
     SensorTime origin_{};  // shown at begin_us_
     std::int64_t begin_us_ = 0;
     std::optional<SensorTime> last_;  // of the frame before
+    bool goes_on_ = false;            // the reader went away, and others did not
 };
 
 }  // namespace eventide

@@ -18,6 +18,10 @@ VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
 
 VideoSink::~VideoSink() = default;
 
+bool VideoSink::is_read() const {
+    return false;
+}
+
 void VideoSink::write(const Frame&) {}
 
 void VideoSink::close() {}

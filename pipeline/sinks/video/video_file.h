@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,7 @@ struct EncoderSettings {
     int crf = 18;
     double fps = 30;  ///< nominal, for the last frame's length
     bool overwrite = false;
+    std::function<bool()> give_up = {};  ///< as OutputOptions has it
 };
 
 /// Times are rounded to what the kind of file knows; a frame that would fall on the one before
@@ -45,6 +47,9 @@ public:
     /// Drains the encoder and ends the file; without a frame none is left behind. After a write
     /// that failed it only closes.
     void finish();
+
+    /// False once the reader of a pipe went away: what is written goes nowhere.
+    bool is_read() const { return !file_->reader_gone(); }
 
 private:
     void open_encoder(const cv::Mat& image);

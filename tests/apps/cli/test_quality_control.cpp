@@ -91,6 +91,17 @@ TEST(QualityControl, GoesUpAfterFiveSecondsInARowThatWereEasy) {
     EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
 }
 
+TEST(QualityControl, GoesUpASecondTimeNoSoonerThanTheFirst) {
+    Machine machine;
+    machine.run(5, 1);
+    machine.run(4, 10);
+    ASSERT_EQ(machine.level(), (QualityLevel{1, 2}));
+    for (int n = 0; n < 100 && machine.level() == QualityLevel{1, 2}; ++n) machine.run(.25, 3.4);
+    ASSERT_EQ(machine.level(), (QualityLevel{1, 1}));
+    EXPECT_EQ(machine.run(4, 1), 0);
+    EXPECT_EQ(machine.run(2, 1), 1);
+}
+
 TEST(QualityControl, AStepUpThatWasTakenBackIsTriedAgainAfterTwiceTheTime) {
     Machine machine;
     const auto seconds_until_up = [&] {
@@ -221,6 +232,8 @@ public:
         }
         return changes;
     }
+    /// Of the recording, from now on.
+    void plays_at(double pace) { now_.pace = demand_.pace = pace; }
     const QualityLevel& level() const { return control_.level(); }
 
 private:
@@ -269,6 +282,15 @@ TEST(QualityControl, KnowsWhatEventWindowsTakeOfTheFramesThread) {
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 20ms}));
     scene.run(5, 1000, 0.5, 20);
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 50ms}));
+}
+
+TEST(QualityControl, ShortensEventWindowsWhereARecordingIsPlayedMoreSlowly) {
+    Scene scene;
+    scene.run(20, 1000, 1);
+    ASSERT_EQ(scene.level(), (QualityLevel{1, 0, 10ms}));
+    scene.plays_at(.5);
+    scene.run(60, 1000, 1);
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 5ms})) << "as many a second of the clock";
 }
 
 /// Twice the pace, and so twice the frames: the load is told as it is, not twice of that.

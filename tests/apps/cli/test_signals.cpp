@@ -1,9 +1,13 @@
 // Signals on threads that nobody of ours made.
+#include "apps/cli/commands/command_files.h"
 #include "apps/cli/signals.h"
+#include "src/core/error.h"
+#include "tests/system/process.h"
 
 #include <gtest/gtest.h>
 
 #include <pthread.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -59,6 +63,22 @@ TEST(SignalsOnAnyThread, WhatCameBeforeThereWasWorkStopsItAtOnce) {
     std::atomic<int> calls = 0;
     const Stopper stopper{signals, [&] { ++calls; }};
     EXPECT_GE(calls, 1);
+}
+
+TEST(SignalsOnAnyThread, EndTheWaitForWhoeverIsToReadAResult) {
+    const test::TempFolder temp;
+    const std::string pipe = temp / "result.json";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    ForeignThread foreign;
+    const Signals signals;
+    foreign.interrupt();
+    try {
+        write_result(pipe, "{}", false, signals);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::failed);
+        EXPECT_EQ(error.what(), pipe + ": stopped before its reader had taken all of it");
+    }
 }
 
 void interrupt_twice_while_the_stop_hangs() {

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <array>
 #include <fstream>
 #include <string>
@@ -29,6 +31,17 @@ cv::Mat sheet_of(int frames, ContactSheetSettings settings, bool with_events = f
     }
     sink.close();
     return cv::imread(path.string());
+}
+
+TEST(ContactSheet, APipeThatNobodyReadsIsGivenUp) {
+    const TempFolder temp;
+    const std::string pipe = temp / "sheet.png";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    int asked = 0;
+    ContactSheetSink sink{{.path = pipe, .give_up = [&] { return ++asked == 2; }}};
+    sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
+    sink.close();
+    EXPECT_EQ(asked, 2);
 }
 
 TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {

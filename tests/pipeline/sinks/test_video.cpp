@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,6 +62,30 @@ TEST(VideoSink, KeepsEachFramesTimeToTheMicrosecond) {
                "color_primaries,time_base,nb_read_frames"}),
         "h264,64,48,yuv420p,tv,bt709,bt709,bt709,1/1000000,100\n");
     EXPECT_EQ(packet_times(temp / "a.mp4"), expected);
+}
+
+TEST(VideoSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
+    signal(SIGPIPE, SIG_IGN);
+    const TempFolder temp;
+    const std::string pipe = temp / "pipe.gif";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const bool others : {true, false}) {
+        const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+        int told = 0;
+        VideoSink sink{{.path = pipe, .reader_left = [&] {
+                            ++told;
+                            return others;
+                        }}};
+        sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
+        EXPECT_TRUE(sink.is_watched());
+        EXPECT_TRUE(sink.wants_more());
+        close(reader);
+        for (int i = 1; i < 4; ++i) sink.write(test::ramp_frame(8, 8, i, from_us(100'000 * i)));
+        EXPECT_EQ(sink.wants_more(), others);
+        EXPECT_EQ(told, 1);
+        EXPECT_FALSE(sink.is_watched());
+        sink.close();
+    }
 }
 
 TEST(VideoSink, SlowMotionShowsFramesLaterInProportion) {

@@ -2,15 +2,10 @@
 // exactly.
 #include "apps/cli/run/state/stream_state.h"
 
-#include "src/core/duration_text.h"
-#include "src/core/error.h"
-#include "src/core/number_text.h"
-#include "src/core/sensor_limits.h"
+#include "apps/cli/run/state/kept_state.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdio>
 
 namespace eventide::app {
 
@@ -120,70 +115,13 @@ void put_noise(const NoiseFilter::State& noise, SensorTime t, std::int64_t width
     file.tensors["stream.hot"] = made({high - 2, width}, {hot.hot.begin(), hot.hot.end()});
 }
 
-/// Words and tensors of a file that was written by anybody.
-class Kept {
-public:
-    Kept(const TensorFile& file, const std::string& name) : file_{file}, name_{name} {}
-
-    std::int64_t number(const std::string& key) const {
-        const std::string text = word(key);
-        const auto value = number_in<std::int64_t>(text);
-        if (!value) refuse("'" + key + "': expected a whole number, found '" + text + "'");
-        return *value;
-    }
-    /// Such that sums of times fit.
-    SensorTime time(const std::string& key) const {
-        const std::int64_t us = number(key);
-        if (us < -kFarthestUs || us > kFarthestUs)
-            refuse("'" + key + "': expected a time that a clock can have, found " +
-                   std::to_string(us));
-        return from_us(us);
-    }
-    std::optional<SensorTime> time_or_none(const std::string& key) const {
-        if (word(key) == "none") return std::nullopt;
-        return time(key);
-    }
-    std::string word(const std::string& key) const {
-        const auto found = file_.metadata.find(key);
-        if (found == file_.metadata.end()) refuse("expected '" + key + "', found none");
-        return found->second;
-    }
-    bool has(const std::string& key) const { return file_.tensors.contains(key); }
-
-    /// Whole numbers from `least` to `most`; a shape's -1 is any.
-    const std::vector<float>& tensor(const std::string& key, std::vector<std::int64_t> shape,
-                                     float least, float most) const {
-        const auto found = file_.tensors.find(key);
-        if (found == file_.tensors.end()) refuse("expected tensor '" + key + "', found none");
-        const Tensor& tensor = found->second;
-        for (std::size_t i = 0; i < shape.size() && i < tensor.shape.size(); ++i)
-            if (shape[i] < 0) shape[i] = tensor.shape[i];
-        if (tensor.shape != shape)
-            refuse("tensor '" + key + "': expected shape " + shape_text(shape) + ", found " +
-                   shape_text(tensor.shape));
-        for (const float value : tensor.values)
-            if (!(value >= least && value <= most && value == std::floor(value)))
-                refuse("tensor '" + key + "': expected whole numbers from " +
-                       std::to_string(std::int64_t(least)) + " to " +
-                       std::to_string(std::int64_t(most)) + ", found " + std::to_string(value));
-        return tensor.values;
-    }
-    [[noreturn]] void refuse(const std::string& words) const {
-        throw Error(ErrorKind::input, name_ + ": state: " + words);
-    }
-
-private:
-    const TensorFile& file_;
-    const std::string& name_;
-};
-
 double bits_at(const std::vector<float>& values, std::size_t at) {
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < 4; ++i) bits |= std::uint64_t(values[at + i]) << (16 * i);
     return std::bit_cast<double>(bits);
 }
 
-std::vector<Event> events_after(const Kept& kept, const std::string& key, SensorTime begin,
+std::vector<Event> events_after(const KeptState& kept, const std::string& key, SensorTime begin,
                                 int width, int height) {
     std::vector<Event> events;
     const auto& values = kept.tensor(key, {-1, kEventValues}, 0, float(kExact));
@@ -200,7 +138,7 @@ std::vector<Event> events_after(const Kept& kept, const std::string& key, Sensor
     return events;
 }
 
-FlickerPairs::State flicker_of(const Kept& kept, SensorTime begin, int width, int height) {
+FlickerPairs::State flicker_of(const KeptState& kept, SensorTime begin, int width, int height) {
     FlickerPairs::State flicker;
     flicker.period.block = kept.time_or_none("stream.flicker_block_us");
     const auto& period = kept.tensor("stream.flicker_period", {9}, 0, 0xFFFF);
@@ -229,7 +167,7 @@ FlickerPairs::State flicker_of(const Kept& kept, SensorTime begin, int width, in
     return flicker;
 }
 
-PipelineState stream_of(const Kept& kept, int width, int height) {
+PipelineState stream_of(const KeptState& kept, int width, int height) {
     PipelineState stream;
     stream.t = kept.time("stream.t_us");
     Slicer::State& slicer = stream.slicer;
@@ -247,7 +185,7 @@ PipelineState stream_of(const Kept& kept, int width, int height) {
     return stream;
 }
 
-NoiseFilter::State noise_of(const Kept& kept, SensorTime t, int width, int height) {
+NoiseFilter::State noise_of(const KeptState& kept, SensorTime t, int width, int height) {
     NoiseFilter::State noise;
     noise.interval = kept.time_or_none("stream.noise_interval_us");
     noise.last = kept.time_or_none("stream.noise_last_us");
@@ -292,7 +230,7 @@ void put_stream_state(const StreamState& state, int width, TensorFile& file) {
 
 std::optional<StreamState> take_stream_state(TensorFile& file, const std::string& name, int width,
                                              int height) {
-    const Kept kept{file, name};
+    const KeptState kept{file, name};
     if (!kept.has("stream.events")) return std::nullopt;
     StreamState state;
     state.window = kept.word("stream.window");
