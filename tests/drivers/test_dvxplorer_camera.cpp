@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide::test::dvxplorer {
 namespace {
@@ -82,17 +83,20 @@ TEST(DvxplorerCamera, CutsARegionOutOnTheCamera) {
     for (const bool mini : {false, true})
         for (const SensorRegion roi :
              {SensorRegion{100, 50, 200, 123}, {0, 9, 640, 3}, {3, 8, 1, 8}})
-            for (const bool flipped : {false, true}) {
+            for (const auto& [flip_x, flip_y] :
+                 {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
                 DvxplorerModelSettings settings;
                 settings.mini = mini;
-                settings.flip_x = settings.flip_y = flipped;
+                settings.flip_x = flip_x;
+                settings.flip_y = flip_y;
                 PluggedIn side{settings, 100};
                 DvxplorerOptions options = at_once();
                 options.settings.roi = roi;
                 DvxplorerCamera camera{options};
                 // The cropper works on the chip's own pixels, which a flipped sensor turns round.
-                const auto inside = [&](const Event& e) {
-                    const int x = flipped ? 639 - e.x : e.x, y = flipped ? 479 - e.y : e.y;
+                const auto inside = [&, &mirrored = settings](const Event& e) {
+                    const int x = mirrored.flip_x ? 639 - e.x : e.x,
+                              y = mirrored.flip_y ? 479 - e.y : e.y;
                     return x >= roi.x && x < roi.x + roi.width && y >= roi.y &&
                            y < roi.y + roi.height;
                 };
