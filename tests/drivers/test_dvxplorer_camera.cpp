@@ -46,6 +46,20 @@ TEST(DvxplorerCamera, GivesImuSamplesInTheRangesAskedForAndTriggers) {
     EXPECT_EQ(got.triggers[3], side.seen.triggers[2]);
 }
 
+TEST(DvxplorerCamera, EachAxisOfItsImuMayBeTurnedRound) {
+    for (const auto turned : {&DvxplorerSensor::imu_flip_x, &DvxplorerSensor::imu_flip_y,
+                              &DvxplorerSensor::imu_flip_z}) {
+        DvxplorerModelSettings settings;
+        settings.sensor.*turned = true;
+        PluggedIn side{settings, 20};
+        DvxplorerCamera camera{at_once()};
+        const Batch got = stream_scene(camera, side.bed, *side.model);
+        ASSERT_EQ(got.imu.size(), 3U);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(got.imu[0].gyro_dps[axis], side.seen.imu[0].gyro_dps[axis], 1e-1);
+    }
+}
+
 TEST(DvxplorerCamera, AMinisImuComesBesideItsDataAndFallsWhereItBelongs) {
     DvxplorerModelSettings settings;
     settings.mini = settings.sensor.imu_flip_x = true;
