@@ -96,6 +96,7 @@ DvxplorerSensor DvxplorerCamera::read_sensor(UsbDevice& device) {
     features_.packet_format = device.read_register(dvxplorer::kPacketFormat);
     features_.mode_control = device.read_register(dvxplorer::kModeControl);
     features_.digital_enable = device.read_register(dvxplorer::kDigitalEnable);
+    features_.statistics = false;
     if (features_.mini) return sensor;
     features_.statistics = number(kMuxHasStatistics) != 0;
     features_.generator = number(kExtHasGenerator) != 0;

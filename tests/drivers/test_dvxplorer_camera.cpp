@@ -46,6 +46,22 @@ TEST(DvxplorerCamera, GivesImuSamplesInTheRangesAskedForAndTriggers) {
     EXPECT_EQ(got.triggers[3], side.seen.triggers[2]);
 }
 
+TEST(DvxplorerCamera, OnlyTheRedBoardIsAskedForItsDrops) {
+    constexpr davis::Register kDroppedLow{davis::mux, 84};
+    for (const bool mini : {false, true}) {
+        DvxplorerModelSettings settings;
+        settings.mini = mini;
+        PluggedIn side{settings, 20};
+        DvxplorerCamera camera{at_once()};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        side.bed.look([&] { side.model->write({kDroppedLow, 7}); });
+        camera.stop();
+        EXPECT_EQ(camera.read(packet), ReadStatus::end);
+        EXPECT_EQ(camera.counters()[CameraCount::dropped_events], mini ? 0U : 7U);
+    }
+}
+
 TEST(DvxplorerCamera, EachAxisOfItsImuMayBeTurnedRound) {
     for (const auto turned : {&DvxplorerSensor::imu_flip_x, &DvxplorerSensor::imu_flip_y,
                               &DvxplorerSensor::imu_flip_z}) {
