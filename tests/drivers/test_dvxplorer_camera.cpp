@@ -46,6 +46,18 @@ TEST(DvxplorerCamera, GivesImuSamplesInTheRangesAskedForAndTriggers) {
     EXPECT_EQ(got.triggers[3], side.seen.triggers[2]);
 }
 
+TEST(DvxplorerCamera, DelaysAreCountedInTheClocksThatItSays) {
+    PluggedIn side{{}, 1};
+    side.model->write({davis::kUsbMhz, 60});
+    side.model->write({davis::kLogicMhz, 50});
+    side.model->write({davis::kClockDeviation, 500});  // per mille
+    DvxplorerOptions options = at_once();
+    options.settings.early_packet_delay_us = 100;
+    const DvxplorerCamera camera{options};
+    EXPECT_EQ(side.model->read(davis::kUsbEarlyPacketDelay), 100U * 60 / 2);
+    EXPECT_EQ(side.model->read(davis::kExtPulseLength), 10U * 50 / 2);
+}
+
 TEST(DvxplorerCamera, OnlyTheRedBoardIsAskedForItsDrops) {
     constexpr davis::Register kDroppedLow{davis::mux, 84};
     for (const bool mini : {false, true}) {
