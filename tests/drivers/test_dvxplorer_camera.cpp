@@ -58,6 +58,17 @@ TEST(DvxplorerCamera, DelaysAreCountedInTheClocksThatItSays) {
     EXPECT_EQ(side.model->read(davis::kExtPulseLength), 10U * 50 / 2);
 }
 
+TEST(DvxplorerCamera, OnlyAGeneratorThatIsThereIsSwitchedOff) {
+    for (const bool has_one : {true, false}) {
+        PluggedIn side{{}, 1};
+        side.model->write({davis::kExtHasGenerator, has_one ? 1U : 0U});
+        const DvxplorerCamera camera{at_once()};
+        const auto& writes = side.model->writes();
+        EXPECT_EQ(std::ranges::count(writes, davis::kExtGeneratorRun, &davis::Write::at),
+                  has_one ? 1 : 0);
+    }
+}
+
 TEST(DvxplorerCamera, OnlyTheRedBoardIsAskedForItsDrops) {
     constexpr davis::Register kDroppedLow{davis::mux, 84};
     for (const bool mini : {false, true}) {
