@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide::test::dvxplorer {
 namespace {
@@ -43,6 +44,59 @@ TEST(DvxplorerCamera, GivesImuSamplesInTheRangesAskedForAndTriggers) {
     ASSERT_EQ(got.triggers.size(), 4U);
     EXPECT_EQ(got.triggers[0].kind, Trigger::Kind::timestamp_reset);
     EXPECT_EQ(got.triggers[3], side.seen.triggers[2]);
+}
+
+TEST(DvxplorerCamera, DelaysAreCountedInTheClocksThatItSays) {
+    PluggedIn side{{}, 1};
+    side.model->write({davis::kUsbMhz, 60});
+    side.model->write({davis::kLogicMhz, 50});
+    side.model->write({davis::kClockDeviation, 500});  // per mille
+    DvxplorerOptions options = at_once();
+    options.settings.early_packet_delay_us = 100;
+    const DvxplorerCamera camera{options};
+    EXPECT_EQ(side.model->read(davis::kUsbEarlyPacketDelay), 100U * 60 / 2);
+    EXPECT_EQ(side.model->read(davis::kExtPulseLength), 10U * 50 / 2);
+}
+
+TEST(DvxplorerCamera, OnlyAGeneratorThatIsThereIsSwitchedOff) {
+    for (const bool has_one : {true, false}) {
+        PluggedIn side{{}, 1};
+        side.model->write({davis::kExtHasGenerator, has_one ? 1U : 0U});
+        const DvxplorerCamera camera{at_once()};
+        const auto& writes = side.model->writes();
+        EXPECT_EQ(std::ranges::count(writes, davis::kExtGeneratorRun, &davis::Write::at),
+                  has_one ? 1 : 0);
+    }
+}
+
+TEST(DvxplorerCamera, OnlyTheRedBoardIsAskedForItsDrops) {
+    constexpr davis::Register kDroppedLow{davis::mux, 84};
+    for (const bool mini : {false, true}) {
+        DvxplorerModelSettings settings;
+        settings.mini = mini;
+        PluggedIn side{settings, 20};
+        DvxplorerCamera camera{at_once()};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        side.bed.look([&] { side.model->write({kDroppedLow, 7}); });
+        camera.stop();
+        EXPECT_EQ(camera.read(packet), ReadStatus::end);
+        EXPECT_EQ(camera.counters()[CameraCount::dropped_events], mini ? 0U : 7U);
+    }
+}
+
+TEST(DvxplorerCamera, EachAxisOfItsImuMayBeTurnedRound) {
+    for (const auto turned : {&DvxplorerSensor::imu_flip_x, &DvxplorerSensor::imu_flip_y,
+                              &DvxplorerSensor::imu_flip_z}) {
+        DvxplorerModelSettings settings;
+        settings.sensor.*turned = true;
+        PluggedIn side{settings, 20};
+        DvxplorerCamera camera{at_once()};
+        const Batch got = stream_scene(camera, side.bed, *side.model);
+        ASSERT_EQ(got.imu.size(), 3U);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(got.imu[0].gyro_dps[axis], side.seen.imu[0].gyro_dps[axis], 1e-1);
+    }
 }
 
 TEST(DvxplorerCamera, AMinisImuComesBesideItsDataAndFallsWhereItBelongs) {
@@ -82,17 +136,20 @@ TEST(DvxplorerCamera, CutsARegionOutOnTheCamera) {
     for (const bool mini : {false, true})
         for (const SensorRegion roi :
              {SensorRegion{100, 50, 200, 123}, {0, 9, 640, 3}, {3, 8, 1, 8}})
-            for (const bool flipped : {false, true}) {
+            for (const auto& [flip_x, flip_y] :
+                 {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
                 DvxplorerModelSettings settings;
                 settings.mini = mini;
-                settings.flip_x = settings.flip_y = flipped;
+                settings.flip_x = flip_x;
+                settings.flip_y = flip_y;
                 PluggedIn side{settings, 100};
                 DvxplorerOptions options = at_once();
                 options.settings.roi = roi;
                 DvxplorerCamera camera{options};
                 // The cropper works on the chip's own pixels, which a flipped sensor turns round.
-                const auto inside = [&](const Event& e) {
-                    const int x = flipped ? 639 - e.x : e.x, y = flipped ? 479 - e.y : e.y;
+                const auto inside = [&, &mirrored = settings](const Event& e) {
+                    const int x = mirrored.flip_x ? 639 - e.x : e.x,
+                              y = mirrored.flip_y ? 479 - e.y : e.y;
                     return x >= roi.x && x < roi.x + roi.width && y >= roi.y &&
                            y < roi.y + roi.height;
                 };
