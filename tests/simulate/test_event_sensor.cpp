@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -78,6 +79,16 @@ TEST(EventSensor, StartsPixelsAtRandomPhasesWhereAsked) {
     for (const auto& [pixel, list] : first) times.push_back(double(list.front()) * 1e-6);
     EXPECT_NEAR(double(times.size()), .5 * kPixels, .05 * kPixels);
     EXPECT_NEAR(moments(times).mean, .5, .04);
+}
+
+TEST(EventSensor, StartsNoPixelBeyondItsThresholds) {
+    SensorTraits traits = plain(.1);
+    traits.random_phase = true;
+    for (const auto& [on, off] : {std::pair{.4, .1}, {.1, .4}}) {
+        traits.threshold_on = on;
+        traits.threshold_off = off;
+        EXPECT_TRUE(watch(traits, .1, still).empty()) << on << ' ' << off;
+    }
 }
 
 TEST(EventSensor, DarkCurrentHidesContrastInTheDark) {
@@ -201,6 +212,16 @@ TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
     EXPECT_NEAR(moments(rates).deviation, 2, .2);
 }
 
+TEST(EventSensor, LeaksAsFastWhateverAPixelsThresholdIs) {
+    SensorTraits traits = plain(.2);
+    traits.leak_hz = 10;
+    traits.mismatch = .2;
+    std::vector<double> rates;
+    for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
+        rates.push_back(double(times.size()) / 10);
+    EXPECT_LT(moments(rates).deviation, .2);
+}
+
 TEST(EventSensor, KeepsTheRefractoryTimeBetweenAPixelsEvents) {
     SensorTraits traits = plain(.01);
     traits.refractory_s = .003;
@@ -240,6 +261,18 @@ TEST(EventSensor, HasAsManyHotPixelsAsAskedForAndTheyAlwaysFire) {
     }
 }
 
+TEST(EventSensor, HotPixelsBeginAtTimesOfTheirOwnAndMostFireOnAlone) {
+    SensorTraits traits = plain(.3);
+    traits.hot_share = .3;
+    traits.hot_hz = {50, 50};
+    const auto events = watch(traits, 2, still);
+    int at_once = 0;
+    const auto times = times_by_pixel(events);
+    for (const auto& [pixel, list] : times) at_once += list.front() <= 1000;
+    EXPECT_LT(at_once, double(times.size()) / 8) << "in a twentieth of their mean interval";
+    EXPECT_NEAR(share_on(events), .6 + .4 * .5, .05);
+}
+
 TEST(EventSensor, KeepsTheRefractoryTimeOfHotPixelsToo) {
     SensorTraits traits = plain(.3);
     traits.hot_share = .05;
@@ -276,6 +309,9 @@ TEST(EventSensor, BoundsTheEventsOfOneStep) {
     const auto events = watch(
         plain(.001), .01, [](double t) { return t > 0 ? 10.0 : 0; }, 10000);
     EXPECT_EQ(double(events.size()), kPixels * EventSensor::kMaxPerStep);
+    const auto later = watch(
+        plain(.001), .03, [](double t) { return t > 0 ? 10.0 : 0; }, 10000);
+    EXPECT_EQ(later.size(), events.size()) << "the rest is caught up silently";
 }
 
 TEST(EventSensor, WorksForSizesThatFillNoWholeLane) {

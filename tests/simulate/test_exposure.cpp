@@ -54,6 +54,17 @@ TEST(Exposure, GivesTheMeanAndTheDeviationAskedFor) {
     EXPECT_NEAR(near.bright, .15 + .25 * 1.5, 1e-3);
 }
 
+TEST(Exposure, BlackIsNoLowerThanItMayBe) {
+    SceneSettings settings = exposed(.4, .3);
+    settings.target_black = {-.1, .15};
+    const Array2<float> light = halves(50, 150);
+    Exposure exposure{settings, Random{1}};
+    exposure.meter(0, light, 1);
+    const Levels levels = developed(exposure, 0, 1, light);
+    EXPECT_NEAR(levels.dark, -.1 + .5 * .5, 1e-3);
+    EXPECT_NEAR(levels.bright, -.1 + .5 * 1.5, 1e-3);
+}
+
 TEST(Exposure, IsMeteredAllOverTheImage) {
     for (int side = 0; side < 4; ++side) {
         Array2<float> light(32, 32);

@@ -91,6 +91,20 @@ TEST(SimRecording, GivesTruthMoreOftenAndLargerWithoutChangingTheRest) {
                     .1);
 }
 
+TEST(SimRecording, WhatIsOfItsBeginComesAloneAlsoWhereThatIsTruthAlone) {
+    SimRecordingSettings settings = small();
+    settings.images_per_second = 0;
+    settings.truths_per_second = 25;
+    SimRecording recording{settings, textures()};
+    Batch batch;
+    std::vector<Truth> truths;
+    ASSERT_TRUE(recording.next(batch, truths));
+    EXPECT_TRUE(batch.empty());
+    ASSERT_EQ(truths.size(), 1U);
+    EXPECT_EQ(truths[0].t, SensorTime{});
+    EXPECT_EQ(recording.now(), SensorTime{});
+}
+
 TEST(SimRecording, BeginsAtTheTimeAskedFor) {
     SimRecordingSettings settings = small();
     const Whole at_zero = record(settings);
