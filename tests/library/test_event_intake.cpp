@@ -170,5 +170,68 @@ TEST(EventIntake, AnImageIsNewToTheWindowThatWasOpenWhenItCame) {
     EXPECT_EQ(known_to, 3) << "the first two had been cut";
 }
 
+Event event_at(std::int64_t t_us) {
+    return {from_us(t_us), 1, 1, Polarity::on};
+}
+
+ReferenceImage image_at(SensorTime t) {
+    ReferenceImage image;
+    image.t = t;
+    image.pixels = Array2<std::uint16_t>(1, 1);
+    return image;
+}
+
+TEST(EventIntake, AfterAResetNothingIsKnownOfTheStreamBefore) {
+    ReconstructorCounters counters;
+    EventIntake intake{windows_of_10_ms(), 64, 48, nullptr, counters};
+    intake.hold_images();
+    Batch batch;
+    batch.events = {event_at(5'000 * kMs)};
+    batch.add_image(image_at(from_us(5'000 * kMs)));
+    intake.push(batch);
+    ASSERT_TRUE(intake.has_images());
+    intake.reset();
+    EXPECT_FALSE(intake.has_images());
+    const Event earlier = event_at(kMs);
+    intake.push(std::span{&earlier, 1});
+    EXPECT_EQ(counters.time_backwards, 0U);
+}
+
+TEST(EventIntake, AStreamWithoutEventsHasNoWindowsWhereverItEnds) {
+    ReconstructorCounters counters;
+    EventIntake intake{windows_of_10_ms(), 64, 48, nullptr, counters};
+    intake.finish(from_us(1'000 * kMs));
+    EventWindow window;
+    EXPECT_FALSE(intake.next(window));
+}
+
+TEST(EventIntake, AnImageOfATimeThatNoStreamHasIsCountedAndLeftOut) {
+    ReconstructorCounters counters;
+    EventIntake intake{windows_of_10_ms(), 64, 48, nullptr, counters};
+    intake.hold_images();
+    Batch batch;
+    batch.add_image(image_at(SensorTime::max()));
+    intake.push(batch);
+    EXPECT_EQ(counters.bad_time, 1U);
+    EXPECT_FALSE(intake.has_images());
+}
+
+TEST(EventIntake, ImagesEndWindowsWhereTheyAreAskedTo) {
+    SlicerSettings settings = windows_of_10_ms();
+    settings.rule = WindowRule::reference;
+    ReconstructorCounters counters;
+    EventIntake intake{settings, 64, 48, nullptr, counters};
+    for (const std::int64_t t : {3 * kMs, 40 * kMs, 90 * kMs}) {
+        Batch batch;
+        batch.events = {event_at(t - kMs)};
+        batch.add_image(image_at(from_us(t)));
+        batch.events.push_back(event_at(t + kMs));
+        intake.push(batch);
+    }
+    std::vector<std::int64_t> ends;
+    for (EventWindow window; intake.next(window);) ends.push_back(to_us(window.window.end) / kMs);
+    EXPECT_EQ(ends, (std::vector<std::int64_t>{3, 40, 90}));
+}
+
 }  // namespace
 }  // namespace eventide
