@@ -20,6 +20,7 @@ enum Module : std::uint16_t {
 
 struct Register {
     std::uint16_t module = 0, address = 0;
+    // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy's own mistake
     friend constexpr auto operator<=>(const Register&, const Register&) = default;
 };
 
