@@ -103,6 +103,33 @@ float shown(ColourChannel channel, double x, double y) {
     return float(.9 - .012 * x - .004 * y);
 }
 
+/// The encoders of all pixels and of each colour, and the stage of them.
+struct Encoders {
+    explicit Encoders(ColourFilter filter)
+        : encode{all, {&blue, &green, &red}, filter, kWidth, kHeight, kBins} {}
+
+    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
+        red{kHeight / 2, kWidth / 2};
+    ColourEncodeStage encode;
+};
+
+/// Their renderers. Frames of all pixels are of `width` and `height`.
+struct Renderers {
+    Renderers(ColourFilter filter, const ColourRenderStage::View& view, int height, int width,
+              const LatentMap& latent)
+        : whole{kHeight, kWidth, height, width}, render{whole,   {&parts[0], &parts[1], &parts[2]},
+                                                        filter,  kWidth,
+                                                        kHeight, view,
+                                                        latent} {}
+
+    EchoRenderer whole;
+    std::array<EchoRenderer, 3> parts{
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+    ColourRenderStage render;
+};
+
 class ColourStages : public testing::TestWithParam<ColourFilter> {
 protected:
     VoxelGrid grid() const {
@@ -117,23 +144,19 @@ protected:
 };
 
 TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
-    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
-        red{kHeight / 2, kWidth / 2};
-    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    Encoders encoders{GetParam()};
+    auto& [all, blue, green, red, encode] = encoders;
     // Frames may be given another size between two of them.
     for (const auto& [first_scale, scale] : {std::pair{1, 1}, {3, 3}, {1, 3}, {3, 1}}) {
         const auto across = [](int factor) { return (kWidth - 1) * factor + 1; };
         const auto down = [](int factor) { return (kHeight - 1) * factor + 1; };
-        EchoRenderer whole{kHeight, kWidth, down(first_scale), across(first_scale)};
-        std::array<EchoRenderer, 3> parts{
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
         LatentMap latent = encode.make_output();
-        ColourRenderStage render{whole,      {&parts[0], &parts[1], &parts[2]},
-                                 GetParam(), kWidth,
-                                 kHeight,    {across(first_scale), down(first_scale), 0, 0},
-                                 latent};
+        Renderers renderers{GetParam(),
+                            {across(first_scale), down(first_scale), 0, 0},
+                            down(first_scale),
+                            across(first_scale),
+                            latent};
+        auto& [whole, parts, render] = renderers;
         encode.encode(grid(), latent);
         render.take(latent);
         Frame frame = render.make_output();
@@ -167,19 +190,13 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
 /// A part of a frame shows what the whole frame shows there; beyond the outermost pixels of a
 /// colour theirs goes on.
 TEST_P(ColourStages, ShowPartsOfFramesAndTheirEdges) {
-    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
-        red{kHeight / 2, kWidth / 2};
-    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    Encoders encoders{GetParam()};
+    auto& [all, blue, green, red, encode] = encoders;
     LatentMap latent = encode.make_output();
     encode.encode(grid(), latent);
     const auto shown_at = [&](const ColourRenderStage::View& view, int height, int width) {
-        EchoRenderer whole{kHeight, kWidth, height, width};
-        std::array<EchoRenderer, 3> parts{
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
-        ColourRenderStage render{
-            whole, {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth, kHeight, view, latent};
+        Renderers renderers{GetParam(), view, height, width, latent};
+        auto& [whole, parts, render] = renderers;
         render.take(latent);
         Frame frame = render.make_output();
         render.render({}, {}, frame);
@@ -212,17 +229,11 @@ TEST_P(ColourStages, ShowPartsOfFramesAndTheirEdges) {
 }
 
 TEST_P(ColourStages, TellEachColourWhatIsKnownOfItsPixelsAndOfTheWindow) {
-    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
-        red{kHeight / 2, kWidth / 2};
-    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
-    EchoRenderer whole{kHeight, kWidth, kHeight, kWidth};
-    std::array<EchoRenderer, 3> parts{
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+    Encoders encoders{GetParam()};
+    auto& [all, blue, green, red, encode] = encoders;
     LatentMap latent = encode.make_output();
-    ColourRenderStage render{whole,   {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth,
-                             kHeight, {kWidth, kHeight, 0, 0},           latent};
+    Renderers renderers{GetParam(), {kWidth, kHeight, 0, 0}, kHeight, kWidth, latent};
+    auto& [whole, parts, render] = renderers;
     VoxelGrid events = grid();
     events.window = {from_us(5), from_us(9)};
     latent.events_per_pixel = Array2<float>(kHeight, kWidth);
@@ -258,17 +269,11 @@ TEST_P(ColourStages, TellEachColourWhatIsKnownOfItsPixelsAndOfTheWindow) {
 
 TEST_P(ColourStages, ChangeTheSizeOfAllColoursOrOfNone) {
     if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
-    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
-        red{kHeight / 2, kWidth / 2};
-    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
-    EchoRenderer whole{kHeight, kWidth, kHeight, kWidth};
-    std::array<EchoRenderer, 3> parts{
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
-        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+    Encoders encoders{GetParam()};
+    auto& [all, blue, green, red, encode] = encoders;
     LatentMap latent = encode.make_output();
-    ColourRenderStage render{whole,   {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth,
-                             kHeight, {kWidth, kHeight, 0, 0},           latent};
+    Renderers renderers{GetParam(), {kWidth, kHeight, 0, 0}, kHeight, kWidth, latent};
+    auto& [whole, parts, render] = renderers;
     encode.encode(grid(), latent);
     render.take(latent);
     Frame frame = render.make_output();

@@ -202,24 +202,26 @@ TEST(EventSensor, LeaksAsFastAfterDays) {
         EXPECT_NEAR(double(to_us(events[i].t) - to_us(events[i - 4].t)), 5e6, 1000);
 }
 
+/// Of each pixel, in Hz, where nothing moves.
+std::vector<double> leak_rates(const SensorTraits& traits) {
+    std::vector<double> rates;
+    for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
+        rates.push_back(double(times.size()) / 10);
+    return rates;
+}
+
 TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
     SensorTraits traits = plain(.2);
     traits.leak_hz = 10;
     traits.leak_mismatch = .2;
-    std::vector<double> rates;
-    for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
-        rates.push_back(double(times.size()) / 10);
-    EXPECT_NEAR(moments(rates).deviation, 2, .2);
+    EXPECT_NEAR(moments(leak_rates(traits)).deviation, 2, .2);
 }
 
 TEST(EventSensor, LeaksAsFastWhateverAPixelsThresholdIs) {
     SensorTraits traits = plain(.2);
     traits.leak_hz = 10;
     traits.mismatch = .2;
-    std::vector<double> rates;
-    for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
-        rates.push_back(double(times.size()) / 10);
-    EXPECT_LT(moments(rates).deviation, .2);
+    EXPECT_LT(moments(leak_rates(traits)).deviation, .2);
 }
 
 TEST(EventSensor, KeepsTheRefractoryTimeBetweenAPixelsEvents) {
