@@ -177,11 +177,7 @@ void Run::open_outputs() {
         settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
         filter_.get(), growing, stop_without_reader_of(settings_.events_out));
     observers_.hand_all_to(events_out_.get());
-    if (!settings_.states_out.empty()) {
-        create_folder(settings_.states_out);
-        states_folder_.take(settings_.states_out);
-        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
-    }
+    if (!settings_.states_out.empty()) states_.emplace(settings_.states_out, settings_.overwrite);
     stats_ = stats_of(settings_, growing);
     readers_.let_go();
 }

@@ -14,12 +14,12 @@
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
 #include "apps/cli/run/start_watch.h"
+#include "apps/cli/run/state/state_folder.h"
 #include "apps/cli/run/state/stream_state.h"
 #include "apps/cli/service_manager.h"
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
-#include "src/io/file_lock.h"
 #include "src/io/held_pipes.h"
 
 #include <atomic>
@@ -113,8 +113,7 @@ private:
     LiveChanges changes_;
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::optional<Pipeline> pipeline_;
-    FolderLock states_folder_;
-    std::size_t states_ = 0;                    // kept until now
+    std::optional<StateFolder> states_;         // none: not asked for
     std::atomic<std::uint64_t> waits_{0};       // Snapshot::waits
     std::vector<std::unique_ptr<Sink>> sinks_;  // last: a page's threads ask the others
 };

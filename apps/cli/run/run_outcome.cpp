@@ -31,11 +31,11 @@ int Run::report(const RunProgress& end) const {
                                               end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);
-    if (states_ < states_at_.size() && !program_.signals.stopping())
-        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states_] +
+    if (states_ && states_->kept() < states_at_.size() && !program_.signals.stopping())
+        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states_->kept()] +
                                           ": expected a time before the run's last event, found "
                                           "one after it; wrote " +
-                                          counted(states_, "state"));
+                                          counted(states_->kept(), "state"));
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);

@@ -9,7 +9,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,13 +45,9 @@ void Run::keep_state(const PipelineState& memory) {
     const StreamState state{memory, filter_ ? filter_->state() : EventFilters::State{},
                             window_text(slicer_), noise_filter_of(settings_, network_.config()),
                             lamp_flicker_of(settings_, !as_live())};
-    // An earlier run's stay until there is one of this.
-    if (states_ == 0 && settings_.overwrite)
-        for (const auto& earlier : earlier_states(settings_.states_out))
-            std::filesystem::remove(earlier);
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
-    write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
+    states_->keep(file);
 }
 
 /// At the end of the run, which a pipe without a reader must not put off for ever.

@@ -5,9 +5,10 @@
 #include "src/binning/noise_filter.h"
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
-#include "src/nn/safetensors.h"
+#include "src/io/output_file.h"
 
 #include <cstdio>
+#include <vector>
 
 namespace eventide::app {
 namespace {
@@ -20,14 +21,7 @@ bool is_stream_state(const std::filesystem::path& file) {
     }
 }
 
-}  // namespace
-
-std::filesystem::path state_file(const std::string& folder, std::size_t number) {
-    char name[48];
-    std::snprintf(name, sizeof name, "state_%06zu.safetensors", number);
-    return std::filesystem::path{folder} / name;
-}
-
+/// Those of an earlier run. Throws Error (usage) for a file that has the name of one and is none.
 std::vector<std::filesystem::path> earlier_states(const std::string& folder) {
     std::vector<std::filesystem::path> states;
     std::error_code none;
@@ -40,6 +34,27 @@ std::vector<std::filesystem::path> earlier_states(const std::string& folder) {
                                               states.back().string());
     }
     return states;
+}
+
+}  // namespace
+
+std::filesystem::path state_file(const std::string& folder, std::size_t number) {
+    char name[48];
+    std::snprintf(name, sizeof name, "state_%06zu.safetensors", number);
+    return std::filesystem::path{folder} / name;
+}
+
+StateFolder::StateFolder(const std::string& folder, bool overwrite)
+    : folder_{folder}, overwrite_{overwrite} {
+    create_folder(folder_);
+    lock_.take(folder_);
+    if (overwrite_) earlier_states(folder_);  // or a refusal
+}
+
+void StateFolder::keep(const TensorFile& state) {
+    if (kept_ == 0 && overwrite_)
+        for (const auto& earlier : earlier_states(folder_)) std::filesystem::remove(earlier);
+    write_safetensors(state_file(folder_, kept_++), state, overwrite_);
 }
 
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model) {

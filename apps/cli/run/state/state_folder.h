@@ -2,21 +2,36 @@
 #pragma once
 
 #include "apps/cli/settings/run_settings.h"
+#include "src/io/file_lock.h"
 #include "src/model/model_config.h"
+#include "src/nn/safetensors.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace eventide::app {
 
 /// FOLDER/state_000002.safetensors
 std::filesystem::path state_file(const std::string& folder, std::size_t number);
 
-/// Those of an earlier run in a folder that may not exist. Throws Error (usage) for a file that has
-/// the name of one and is none.
-std::vector<std::filesystem::path> earlier_states(const std::string& folder);
+/// The folder while a run keeps its states there.
+class StateFolder {
+public:
+    /// Makes the folder, and keeps other runs out of it. Throws Error (usage) where, with
+    /// `overwrite`, a file that has the name of a state is none.
+    StateFolder(const std::string& folder, bool overwrite);
+
+    /// As the next file. An earlier run's states stay until there is one of this.
+    void keep(const TensorFile& state);
+    std::size_t kept() const { return kept_; }
+
+private:
+    std::string folder_;
+    bool overwrite_;
+    FolderLock lock_;
+    std::size_t kept_ = 0;
+};
 
 /// noise_filter_text() of what a run has, or "off".
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model);
