@@ -220,12 +220,12 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     header.stream.format = "text";
     Lines lines(as_text(first_bytes));
     auto line = lines.next();
-    auto size = lines.size();
-    if (line)
-        if (const auto stated = geometry_of(split_fields(*line))) {
-            size = stated;
-            line = lines.next();
-        }
+    std::optional<Sides> size;
+    if (line) size = geometry_of(split_fields(*line));
+    if (size)
+        line = lines.next();
+    else
+        size = lines.size();
     if (size) {
         check_geometry(*size);
         header.stream.width = int((*size)[0]);
