@@ -7,10 +7,7 @@
 #include "apps/cli/progress.h"
 #include "apps/cli/run/colour.h"
 #include "apps/cli/run/events_out.h"
-#include "apps/cli/settings/time_point.h"
 #include "apps/cli/terminal.h"
-#include "pipeline/filters/filter_chain.h"
-#include "replay/convert.h"
 #include "replay/formats.h"
 #include "replay/left_out.h"
 #include "src/core/error.h"
@@ -44,13 +41,6 @@ const Format* target_format(const std::string& file, const std::string& name) {
                         "can be written, " + extensions_of_writable() + "; --to-format takes " +
                         names_of_writable());
     return format;
-}
-
-StreamHeader header_behind(const FilterChain& filters, StreamHeader header) {
-    header.width = filters.size().width;
-    header.height = filters.size().height;
-    header.colour_filter = filters.pattern(header.colour_filter);
-    return header;
 }
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
@@ -115,65 +105,102 @@ SettingTable ConvertCommand::settings() {
     return table;
 }
 
-int ConvertCommand::run(Program& program) {
-    const bool to_udp = to_file_.starts_with("udp:");
-    if (to_udp && to_format_ != "auto")
+/// Null for datagrams and for a folder.
+const Format* ConvertCommand::format_to_write() const {
+    if (!to_udp()) return target_format(to_file_, to_format_);
+    if (to_format_ != "auto")
         throw Error(ErrorKind::usage, "--to-format " + to_format_ +
                                           ": expected a file as TO, found " + to_file_ +
                                           "; datagrams have ?format=t64, t32 or spif");
-    const Format* format = to_udp ? nullptr : target_format(to_file_, to_format_);
-    const OpenOptions options = input_.options();
-    if (format != nullptr && format->name != "text")
-        refuse_terminal("TO " + to_file_, to_file_, force_);
-    program.files.may_replace(overwrite_);
-    name_recording("FROM", from_file_, program.files);
-    name_filter_files(filter_, program.files);
+    return nullptr;
+}
+
+void ConvertCommand::name_all_files(const Format* format, NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    name_recording("FROM", from_file_, files);
+    name_filter_files(filter_, files);
     if (format != nullptr)
-        program.files.writes("TO", to_file_);
-    else if (!to_udp)
-        name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
-    HeldPipes readers{program.files.pipes()};
-    const auto recording = open_input(from_file_, input_, [&] {
-        readers.look();
-        return program.signals.stopping();
-    });
-    refuse_idle_input_flags(program.flags, {recording->info().format});
-    const TimePointReader times{from_file_, options};
+        files.writes("TO", to_file_);
+    else if (!to_udp())
+        name_run_folder("TO", to_file_, EcdWriter::files(), files);
+}
+
+/// May read the beginning of the recording.
+ConvertOptions ConvertCommand::limits(const TimePointReader& times) const {
     ConvertOptions how;
     if (from_) how.from = times.time_of(*from_);
     if (to_) how.to = times.time_of(*to_);
-    check_part({from_file_, options, from_, how.from, how.to});
-    StreamHeader header = header_of(recording->info());
-    FilterChain filters{filter_, {header.width, header.height}};
-    const bool holds_images = !to_udp && (format == nullptr || format->holds.images);
+    check_part({from_file_, input_.options(), from_, how.from, how.to});
+    return how;
+}
+
+/// Of what the filters leave. A recording that does not say its images' pattern is asked for it
+/// where images are written.
+StreamHeader ConvertCommand::header_behind(const FilterChain& filters, const Format* format,
+                                           const SensorInfo& sensor) const {
+    StreamHeader header = header_of(sensor);
+    const bool holds_images = !to_udp() && (format == nullptr || format->holds.images);
     if (holds_images && header.colour_filter == ColourFilter::none)
-        header.colour_filter = filter_of_images(from_file_, recording->info().format, options);
-    header = header_behind(filters, header);
-    how.colours = header.colour_filter;
-    if (!filters.empty() && how.from && !is_read_once(from_file_))
-        filters.count_from(times.time_of({}));
-    if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
-    const OutputOptions output{.overwrite = overwrite_,
-                               .give_up = [&program] { return program.signals.stopping(); }};
-    // A camera behind a pipe goes on until it is stopped; of a file, a part is not what was wanted.
-    const bool keeps_earlier = !is_read_once(from_file_) && would_replace(to_file_);
-    std::unique_ptr<ConvertTarget> target;
-    if (to_udp)
-        target = open_event_target(to_file_, output, header);
-    else
-        target = std::make_unique<RecordingOut>(to_file_, output, format, header);
-    readers.let_go();
+        header.colour_filter = filter_of_images(from_file_, sensor.format, input_.options());
+    header.width = filters.size().width;
+    header.height = filters.size().height;
+    header.colour_filter = filters.pattern(header.colour_filter);
+    return header;
+}
+
+std::unique_ptr<ConvertTarget> ConvertCommand::open_target(const Format* format,
+                                                           const StreamHeader& header,
+                                                           const Program& program) const {
+    const OutputOptions options{.overwrite = overwrite_,
+                                .give_up = [&program] { return program.signals.stopping(); }};
+    if (to_udp()) return open_event_target(to_file_, options, header);
+    return std::make_unique<RecordingOut>(to_file_, options, format, header);
+}
+
+/// `keeps_earlier`: a part does not take the place of a whole file.
+ConvertReport ConvertCommand::copy(Recording& recording, ConvertTarget& target,
+                                   const ConvertOptions& how, bool keeps_earlier,
+                                   const Program& program) const {
     Progress progress{program.quiet};
-    const ConvertReport report = convert(*recording, *target, how, [&] {
-        if (recording->size_bytes() > 0)
-            progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
+    const ConvertReport report = convert(recording, target, how, [&] {
+        if (recording.size_bytes() > 0)
+            progress.show(double(recording.position_bytes()) / double(recording.size_bytes()));
         if (keeps_earlier && program.signals.stopping()) throw kept_earlier_file(to_file_);
         return !program.signals.stopping();
     });
     progress.clear();
     if (program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
-    say(from_file_, recording->info().format, to_file_, report);
+    return report;
+}
+
+int ConvertCommand::run(Program& program) {
+    const Format* const format = format_to_write();
+    if (format != nullptr && format->name != "text")
+        refuse_terminal("TO " + to_file_, to_file_, force_);
+    name_all_files(format, program.files);
+    HeldPipes readers{program.files.pipes()};
+    const auto recording = open_input(from_file_, input_, [&] {
+        readers.look();
+        return program.signals.stopping();
+    });
+    const SensorInfo& sensor = recording->info();
+    refuse_idle_input_flags(program.flags, {sensor.format});
+    const TimePointReader times{from_file_, input_.options()};
+    ConvertOptions how = limits(times);
+    FilterChain filters{filter_, {sensor.width, sensor.height}};
+    if (!filters.empty()) {
+        if (how.from && !is_read_once(from_file_)) filters.count_from(times.time_of({}));
+        how.filter = [&filters](Batch& batch) { filters.process(batch); };
+    }
+    const StreamHeader header = header_behind(filters, format, sensor);
+    how.colours = header.colour_filter;
+    // A camera behind a pipe goes on until it is stopped; of a file, a part is not what was wanted.
+    const bool keeps_earlier = !is_read_once(from_file_) && would_replace(to_file_);
+    const auto target = open_target(format, header, program);
+    readers.let_go();
+    const ConvertReport report = copy(*recording, *target, how, keeps_earlier, program);
+    say(from_file_, sensor.format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
     const bool incomplete =
         report.damaged.total() > 0 || report.lost > 0 || !report.data.is_whole();

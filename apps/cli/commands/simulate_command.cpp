@@ -2,17 +2,14 @@
 #include "apps/cli/commands/simulate_command.h"
 
 #include "apps/cli/commands/command_files.h"
-#include "apps/cli/commands/recording_out.h"
 #include "apps/cli/idle_flag.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/words.h"
 #include "apps/cli/terminal.h"
-#include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
 #include "replay/written_data.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
-#include "src/simulate/colour_recording.h"
 #include "src/simulate/conditions.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/textures_folder.h"
@@ -204,64 +201,93 @@ void SimulateCommand::name_output_files(NamedFiles& files) const {
     if (!truth_.empty()) name_run_folder("--truth", truth_, FolderSink::files(), files);
 }
 
+void SimulateCommand::refuse_what_would_change_nothing(const Program& program) const {
+    if (out_.empty())
+        throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
+    if (truth_.empty())
+        for (const char* key : {"truths_per_second", "truth_scale"})
+            refuse_idle_flag(program.flags, key, "--truth FOLDER");
+}
+
+ColourRecording::Textures SimulateCommand::textures() const {
+    if (bayer_ == ColourFilter::none)
+        return {open_textures(textures_, kProceduralTextures), {}, {}};
+    if (!std::filesystem::is_directory(textures_))
+        throw Error(ErrorKind::usage, "--bayer " + std::string{name_of(bayer_)} +
+                                          ": expected --textures and a folder of colour images, "
+                                          "found '" +
+                                          textures_ + "'");
+    return colour_textures_from_folder(textures_);
+}
+
+/// What is simulated and cannot be kept.
+void SimulateCommand::warn_of_loss(const FormatHolds& holds) const {
+    if (images_per_second_ <= 0) return;
+    if (!holds.images)
+        spdlog::warn("{}: its format cannot hold reference images", out_);
+    else if (!holds.colour_filter && bayer_ != ColourFilter::none)
+        spdlog::warn("{}", WrittenData::colours_lost_text(out_, bayer_));
+}
+
+/// Until the end, or until it is stopped; `truth` may be null.
+SimulateCommand::Written SimulateCommand::write(const SimRecordingSettings& what,
+                                                const ColourRecording::Textures& textures,
+                                                RecordingOut& out, FolderSink* truth,
+                                                const std::function<bool()>& goes_on,
+                                                bool quiet) const {
+    Progress progress{quiet};
+    Written written;
+    simulate(what, textures, [&](const Batch& batch, std::vector<Frame>& seen) {
+        if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
+        written.events += batch.events.size();
+        written.images += out.holds().images ? batch.images.size() : 0;
+        for (Frame& view : seen) {
+            view.index = written.truths++;
+            truth->write(view);
+        }
+        if (!batch.events.empty())
+            progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
+        return goes_on();
+    });
+    progress.clear();
+    out.finish();
+    if (truth != nullptr) truth->close();
+    return written;
+}
+
 int SimulateCommand::run(Program& program) {
     if (list_) {
         print_scenes();
         return exit_done;
     }
-    if (out_.empty())
-        throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
+    refuse_what_would_change_nothing(program);
     name_output_files(program.files);
-    if (truth_.empty())
-        for (const char* key : {"truths_per_second", "truth_scale"})
-            refuse_idle_flag(program.flags, key, "--truth FOLDER");
     const SimRecordingSettings what = plan();
-    if (bayer_ != ColourFilter::none && !std::filesystem::is_directory(textures_))
-        throw Error(ErrorKind::usage, "--bayer " + std::string{name_of(bayer_)} +
-                                          ": expected --textures and a folder of colour images, "
-                                          "found '" +
-                                          textures_ + "'");
-    const ColourRecording::Textures textures =
-        bayer_ == ColourFilter::none
-            ? ColourRecording::Textures{open_textures(textures_, kProceduralTextures), {}, {}}
-            : colour_textures_from_folder(textures_);
+    const ColourRecording::Textures seen = textures();
     StreamHeader header = header_of(what);
     header.colour_filter = bayer_;
-    const OutputOptions output{.overwrite = overwrite_,
-                               .give_up = [&program] { return program.signals.stopping(); }};
     const bool keeps_earlier = would_replace(out_);
-    RecordingOut out{out_, output, format_of(out_), header};
-    if (!out.holds().images && what.images_per_second > 0)
-        spdlog::warn("{}: its format cannot hold reference images", out_);
-    if (out.holds().images && !out.holds().colour_filter && bayer_ != ColourFilter::none &&
-        what.images_per_second > 0)
-        spdlog::warn("{}", WrittenData::colours_lost_text(out_, bayer_));
-    std::unique_ptr<FolderSink> truth;
-    if (!truth_.empty())
-        truth = std::make_unique<FolderSink>(FolderSettings{
-            .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
-    Progress progress{program.quiet};
-    std::uint64_t events = 0, images = 0, truths = 0;
-    simulate(what, textures, [&](const Batch& batch, std::vector<Frame>& seen) {
-        if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
-        events += batch.events.size();
-        images += out.holds().images ? batch.images.size() : 0;
-        for (Frame& view : seen) {
-            view.index = truths++;
-            truth->write(view);
-        }
-        if (!batch.events.empty())
-            progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
+    const auto goes_on = [&] {
         if (keeps_earlier && program.signals.stopping()) throw kept_earlier_file(out_);
         return !program.signals.stopping();
-    });
-    progress.clear();
-    out.finish();
-    if (truth) truth->close();
+    };
+    RecordingOut out{
+        out_,
+        {.overwrite = overwrite_, .give_up = [&program] { return program.signals.stopping(); }},
+        format_of(out_),
+        header};
+    warn_of_loss(out.holds());
+    std::optional<FolderSink> truth;
+    if (!truth_.empty())
+        truth.emplace(FolderSettings{
+            .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
+    const Written written =
+        write(what, seen, out, truth ? &*truth : nullptr, goes_on, program.quiet);
     if (program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
-    spdlog::info("{}: {}, {}", out_, counted(events, "event"), counted(images, "image"));
-    if (truth) spdlog::info("{}: {}", truth_, counted(truths, "frame"));
+    spdlog::info("{}: {}, {}", out_, counted(written.events, "event"),
+                 counted(written.images, "image"));
+    if (truth) spdlog::info("{}: {}", truth_, counted(written.truths, "frame"));
     return exit_done;
 }
 
