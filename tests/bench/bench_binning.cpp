@@ -14,7 +14,7 @@ namespace {
 
 using namespace eventide;
 
-constexpr std::int64_t kWidth_us = 50'000;
+constexpr std::int64_t kWidthUs = 50'000;
 
 /// Events as a camera gives them: three quarters along moving edges, the rest anywhere.
 std::vector<Event> moving_edges(int width, int height, std::size_t n, std::int64_t begin_us) {
@@ -23,7 +23,7 @@ std::vector<Event> moving_edges(int width, int height, std::size_t n, std::int64
     for (std::size_t i = 0; i < n; ++i) {
         const double phase = double(i) / double(n);
         Event& event = events[i];
-        event.t = from_us(begin_us + 1 + std::int64_t(phase * double(kWidth_us - 1)));
+        event.t = from_us(begin_us + 1 + std::int64_t(phase * double(kWidthUs - 1)));
         event.x = std::uint16_t(rng() % unsigned(width));
         event.y = std::uint16_t(rng() % unsigned(height));
         if (rng() % 4 != 0) {
@@ -40,7 +40,7 @@ void bin(benchmark::State& state, int width, int height) {
     const auto n = std::size_t(state.range(1));
     const auto events = moving_edges(width, height, n, 1'700'000'000'000'000);
     const EventWindow event_window{
-        {from_us(1'700'000'000'000'000), from_us(1'700'000'000'000'000 + kWidth_us)}, events};
+        {from_us(1'700'000'000'000'000), from_us(1'700'000'000'000'000 + kWidthUs)}, events};
     Binner binner(bins, height, width);
     // As in the pipeline: a few grids in turn, so that the one written is not the one just read.
     std::vector<VoxelGrid> grids{binner.make_output(), binner.make_output(), binner.make_output()};
@@ -89,7 +89,7 @@ void noise_filter(benchmark::State& state, int width, int height) {
     NoiseFilter filter(width, height, {});
     for (auto _ : state) {
         state.PauseTiming();
-        for (Event& event : events) event.t += SensorDuration{kWidth_us};
+        for (Event& event : events) event.t += SensorDuration{kWidthUs};
         kept = events;
         state.ResumeTiming();
         filter.process(kept);

@@ -38,7 +38,7 @@ std::shared_ptr<const RecordedPackets> simulated_packets(const std::string& scen
 
 std::shared_ptr<const RecordedPackets> random_packets(const Size& size, double rate,
                                                       double seconds) {
-    constexpr std::int64_t kChunk_us = 2000;
+    constexpr std::int64_t kChunkUs = 2000;
     std::minstd_rand random{1};
     Aedat3Writer writer;
     auto data = std::make_shared<RecordedPackets>();
@@ -49,13 +49,13 @@ std::shared_ptr<const RecordedPackets> random_packets(const Size& size, double r
     header.height = size.height;
     writer.begin(header, bytes);
     const Aedat3Header read = read_aedat3_header(bytes);
-    const auto in_chunk = std::size_t(std::llround(rate * kChunk_us * 1e-6));
+    const auto in_chunk = std::size_t(std::llround(rate * kChunkUs * 1e-6));
     Batch batch;
-    for (std::int64_t begin = 0; begin < std::llround(seconds * 1e6); begin += kChunk_us) {
+    for (std::int64_t begin = 0; begin < std::llround(seconds * 1e6); begin += kChunkUs) {
         batch.clear();
         for (std::size_t i = 0; i < in_chunk; ++i)
             batch.events.push_back(
-                {from_us(begin + std::int64_t(i) * kChunk_us / std::int64_t(in_chunk)),
+                {from_us(begin + std::int64_t(i) * kChunkUs / std::int64_t(in_chunk)),
                  std::uint16_t(random() % unsigned(size.width)),
                  std::uint16_t(random() % unsigned(size.height)), Polarity(random() % 2)});
         writer.write(batch, bytes);

@@ -202,6 +202,7 @@ private:
                                        "--threads",
                                        std::to_string(settings_.threads)};
         std::vector<char*> arguments;
+        arguments.reserve(words.size() + 1);
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
         pid_t child = 0;

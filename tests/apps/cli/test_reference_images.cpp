@@ -40,13 +40,13 @@ TEST(ReferenceImages, AreThereForAsLongAsTheContactSheetWaitsHoweverManyThereAre
 }
 
 TEST(ReferenceImages, TheNewestFewStayHoweverFarApart) {
-    constexpr int kApart_ms = 10'000, kFew = int(ReferenceImages::kKeptAnyway);
+    constexpr int kApartMs = 10'000, kFew = int(ReferenceImages::kKeptAnyway);
     ReferenceImages references;
-    for (int i = 0; i < kFew; ++i) show_images(references, i * kApart_ms, i * kApart_ms + 1);
+    for (int i = 0; i < kFew; ++i) show_images(references, i * kApartMs, i * kApartMs + 1);
     EXPECT_FALSE(truth_at(references, 0).empty());
-    show_images(references, kFew * kApart_ms, kFew * kApart_ms + 1);
+    show_images(references, kFew * kApartMs, kFew * kApartMs + 1);
     EXPECT_TRUE(truth_at(references, 0).empty());
-    EXPECT_FALSE(truth_at(references, kApart_ms).empty());
+    EXPECT_FALSE(truth_at(references, kApartMs).empty());
 }
 
 TEST(ReferenceImages, OfAClockThatBeganAnewAreTheNewOnes) {
