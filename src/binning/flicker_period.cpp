@@ -74,8 +74,7 @@ void FlickerPeriod::restore(const State& state) {
     counted_ = std::accumulate(state.intervals.begin(), state.intervals.end(), std::uint32_t{0});
 }
 
-void FlickerPeriod::see(const Event& event) noexcept {
-    if (((event.x + event.y) & 3) != 0) return;
+void FlickerPeriod::watch(const Event& event) noexcept {
     if (!state_.block || event.t < *state_.block) {
         forget_rises(event.t);
         begin_block(event.t);

@@ -1,8 +1,6 @@
 // What each pixel's newest event was.
 #include "src/binning/newest_events.h"
 
-#include "src/core/simd4.h"
-
 #include <algorithm>
 
 namespace eventide {
@@ -30,33 +28,6 @@ void NewestEvents::sweep(SensorTime now) noexcept {
     for (std::uint32_t& word : words_)
         if (all || age(word, now) > kLongest) word = old_at(now);
     swept_ = now;
-}
-
-NewestEvents::Around NewestEvents::around(const Event& event, SensorDuration fired_within,
-                                          SensorDuration alike_within) const noexcept {
-    using namespace lanes;
-    // now - word is twice the age, and 1 more where that event was off; less half of the numbers'
-    // range, so that what lies ahead is the largest of signed numbers.
-    constexpr std::uint32_t kHalf = std::uint32_t{1} << 31;
-    const U4 now = splat(word(event) | 1) + kHalf;
-    const auto limit = [](SensorDuration within) {
-        return I4(splat(std::uint32_t(2 * within.count() + 1) - kHalf));
-    };
-    const I4 fired_limit = limit(fired_within), alike_limit = limit(alike_within);
-    const I4 off = I4(splat(event.polarity == Polarity::off ? 1U : 0U));
-    constexpr std::int32_t kNever = 0x7FFF'FFFF;
-    I4 found{};  // fired + 256 alike, of each column; the fourth is none of the neighbours'
-    const auto look_at = [&](std::size_t first, I4 not_these) {
-        const I4 ages = I4(now - load(&words_[first])) | not_these;
-        const I4 like = ((ages ^ off) & 1) == 0;
-        found -= (ages <= fired_limit) + 256 * (like & (ages <= alike_limit));
-    };
-    const std::size_t own = at(event);
-    look_at(own - stride_ - 1, I4{});
-    look_at(own - 1, I4{0, kNever, 0, 0});
-    look_at(own + stride_ - 1, I4{});
-    const std::int32_t sum = found[0] + found[1] + found[2];
-    return {sum & 0xFF, sum >> 8};
 }
 
 std::vector<SensorTime> NewestEvents::times(SensorTime now) const {

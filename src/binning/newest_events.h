@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/event.h"
+#include "src/core/simd4.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -74,5 +75,33 @@ private:
     std::vector<std::uint32_t> words_;  // [y + 1][x + 1]: us << 1 | on; one beyond the end is read
     SensorTime swept_{};
 };
+
+inline NewestEvents::Around NewestEvents::around(const Event& event, SensorDuration fired_within,
+                                                 SensorDuration alike_within) const noexcept {
+    using namespace lanes;
+    // now - word is twice the age, and 1 more where that event was off; less half of the numbers'
+    // range, so that what lies ahead is the largest of signed numbers.
+    constexpr std::uint32_t kHalf = std::uint32_t{1} << 31;
+    const U4 now = splat(word(event) | 1) + kHalf;
+    const auto above = [](SensorDuration within) {
+        return I4(splat(std::uint32_t(2 * within.count() + 2) - kHalf));
+    };
+    const I4 above_fired = above(fired_within), above_alike = above(alike_within);
+    const I4 on = I4(splat(event.polarity == Polarity::on ? 1U : 0U));
+    constexpr std::int32_t kNever = 0x7FFF'FFFF;
+    I4 fired{}, alike{};  // of each column; the fourth is none of the neighbours'
+    const auto look_at = [&](std::size_t first, I4 not_these) {
+        const I4 ages = I4(now - load(&words_[first])) | not_these;
+        fired -= ages < above_fired;
+        alike += (ages ^ on) & (ages < above_alike) & 1;
+    };
+    const std::size_t own = at(event);
+    look_at(own - stride_ - 1, I4{});
+    look_at(own - 1, I4{0, kNever, 0, 0});
+    look_at(own + stride_ - 1, I4{});
+    const I4 found = fired + 256 * alike;
+    const std::int32_t sum = found[0] + found[1] + found[2];
+    return {sum & 0xFF, sum >> 8};
+}
 
 }  // namespace eventide

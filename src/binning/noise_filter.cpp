@@ -53,6 +53,39 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
     set_noise(kUsualNoiseHz);
 }
 
+// In the interval before and what there is of this one, together so many intervals.
+inline bool NoiseFilter::is_quiet(const Tile& tile, double intervals) const noexcept {
+    const double noise = intervals * tile.noise;
+    const double more = double(tile.events) + tile.before - noise - 1;
+    return more * std::abs(more) <= kQuietDeviations * kQuietDeviations * noise;
+}
+
+// What a time that lies behind the interval ends.
+void NoiseFilter::advance(SensorTime t) noexcept {
+    end_interval();
+    const auto silent = (t - *interval_) / kInterval;
+    if (silent > 0) {
+        for (Tile& tile : tiles_) tile.before = 0;
+        set_noise(0);
+    }
+    *interval_ += silent * kInterval;
+}
+
+// True where the event's tile is quiet.
+inline bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept {
+    if (event.t - *interval_ >= kInterval) [[unlikely]]
+        advance(event.t);
+    // What a whole number of tiles leaves at the right and bottom belongs to the last ones.
+    const int row = std::min(event.y / kTile, tile_rows_ - 1);
+    const int column = std::min(event.x / kTile, tile_columns_ - 1);
+    Tile& tile = tiles_[std::size_t(row) * std::size_t(tile_columns_) + std::size_t(column)];
+    tile.events += hot ? 0 : 1;
+    tile.supported += supported ? 1 : 0;
+    const double of_two = 1 + double((event.t - *interval_).count()) * kPerInterval;
+    const bool adapts = settings_.shortest != settings_.longest;
+    return adapts && measured_ && is_quiet(tile, of_two);
+}
+
 void NoiseFilter::process(std::vector<Event>& events) noexcept {
     constexpr std::ptrdiff_t kAhead = 8;
     auto kept = events.begin();
@@ -72,7 +105,8 @@ void NoiseFilter::process(std::vector<Event>& events) noexcept {
         const bool quiet = measure(event, hot, surely);
         if (!hot) newest_.set(event);
         *kept = event;
-        kept += begins || (!hot && (quiet ? surely : support.fired >= kSupport)) ? 1 : 0;
+        const bool supported = quiet ? surely : support.fired >= kSupport;
+        kept += int(begins) | (int(supported) & int(!hot));  // no jumps: none could be foretold
     }
     events.erase(kept, events.end());
 }
@@ -87,40 +121,11 @@ void NoiseFilter::reset() noexcept {
     set_noise(kUsualNoiseHz);
 }
 
-// True where the event's tile is quiet.
-bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept {
-    if (event.t - *interval_ >= kInterval) {
-        end_interval();
-        const auto silent = (event.t - *interval_) / kInterval;
-        if (silent > 0) {
-            for (Tile& tile : tiles_) tile.before = 0;
-            set_noise(0);
-        }
-        *interval_ += silent * kInterval;
-    }
-    // What a whole number of tiles leaves at the right and bottom belongs to the last ones.
-    const int row = std::min(event.y / kTile, tile_rows_ - 1);
-    const int column = std::min(event.x / kTile, tile_columns_ - 1);
-    Tile& tile = tiles_[std::size_t(row) * std::size_t(tile_columns_) + std::size_t(column)];
-    if (!hot) ++tile.events;
-    if (supported) ++tile.supported;
-    const double of_two = 1 + double((event.t - *interval_).count()) * kPerInterval;
-    const bool adapts = settings_.shortest != settings_.longest;
-    return adapts && measured_ && is_quiet(tile, of_two);
-}
-
 void NoiseFilter::begin_stream(SensorTime t) noexcept {
     newest_.forget(t);
     for (Tile& tile : tiles_) tile = {};
     interval_ = t;
     measured_ = false;
-}
-
-// In the interval before and what there is of this one, together so many intervals.
-bool NoiseFilter::is_quiet(const Tile& tile, double intervals) const noexcept {
-    const double noise = intervals * tile.noise;
-    const double more = double(tile.events) + tile.before - noise - 1;
-    return more * std::abs(more) <= kQuietDeviations * kQuietDeviations * noise;
 }
 
 bool NoiseFilter::is_alone(const Tile& tile) noexcept {

@@ -90,6 +90,7 @@ public:
 private:
     static constexpr int kTile = 8;
     bool measure(const Event& event, bool hot, bool supported) noexcept;
+    void advance(SensorTime t) noexcept;
     void begin_stream(SensorTime t) noexcept;
     bool is_quiet(const Tile& tile, double intervals) const noexcept;
     static bool is_alone(const Tile& tile) noexcept;

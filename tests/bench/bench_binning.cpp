@@ -1,5 +1,7 @@
-// Speed of the noise filter, slicing and binning on one core, whole-grid finalisation included.
+// Speed of the filters that run by themselves, of slicing and binning on one core, whole-grid
+// finalisation included.
 #include "src/binning/binner.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 #include "src/binning/slicer.h"
 
@@ -83,10 +85,11 @@ void event_window(benchmark::State& state, WindowRule rule) {
 BENCHMARK_CAPTURE(event_window, duration, WindowRule::duration);
 BENCHMARK_CAPTURE(event_window, count, WindowRule::count);
 
-void noise_filter(benchmark::State& state, int width, int height) {
+/// Of a filter that works in place, in the order it has in the pipeline.
+template <typename Filter>
+void filter(benchmark::State& state, int width, int height, Filter filter) {
     const auto n = std::size_t(state.range(0));
     std::vector<Event> events = moving_edges(width, height, n, 0), kept;
-    NoiseFilter filter(width, height, {});
     for (auto _ : state) {
         state.PauseTiming();
         for (Event& event : events) event.t += SensorDuration{kWidthUs};
@@ -96,6 +99,18 @@ void noise_filter(benchmark::State& state, int width, int height) {
         benchmark::DoNotOptimize(kept.size());
     }
     state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(n));
+}
+
+/// Where none flickers.
+void lamp_flicker(benchmark::State& state, int width, int height) {
+    filter(state, width, height, FlickerPairs(width, height, SensorDuration{0}));
+}
+BENCHMARK_CAPTURE(lamp_flicker, 240x180, 240, 180)->Arg(50'000)->ArgName("events");
+BENCHMARK_CAPTURE(lamp_flicker, 640x480, 640, 480)->Arg(200'000)->ArgName("events");
+BENCHMARK_CAPTURE(lamp_flicker, 1280x720, 1280, 720)->Arg(400'000)->ArgName("events");
+
+void noise_filter(benchmark::State& state, int width, int height) {
+    filter(state, width, height, NoiseFilter(width, height, {}));
 }
 BENCHMARK_CAPTURE(noise_filter, 240x180, 240, 180)->Arg(50'000)->ArgName("events");
 BENCHMARK_CAPTURE(noise_filter, 640x480, 640, 480)->Arg(200'000)->ArgName("events");
