@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -56,6 +57,7 @@ VoxelGrid Binner::make_output() const {
     VoxelGrid grid;
     grid.values = Array3<float>(height_, width_, 4 * bins_ + 1);
     grid.touched = {height_, width_};
+    grid.ages = {height_, width_};
     return grid;
 }
 
@@ -68,12 +70,15 @@ void Binner::restore(const std::vector<std::uint8_t>& ages) {
         throw Error(ErrorKind::input, "voxel grid: expected the ages of " +
                                           std::to_string(ages_.size()) + " pixels, found " +
                                           std::to_string(ages.size()));
-    ages_ = ages;  // clamped with the next window
+    std::ranges::transform(ages, ages_.begin(),
+                           [](std::uint8_t age) { return std::min(age, kOldest); });
 }
 
 void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept {
     assert(grid.values.height() == height_ && grid.values.width() == width_ &&
-           grid.values.channels() == 4 * bins_ + 1 && grid.touched.values().size() == ages_.size());
+           grid.values.channels() == 4 * bins_ + 1 &&
+           grid.touched.values().size() == ages_.size() &&
+           grid.ages.values().size() == ages_.size());
     grid.window = event_window.window;
     grid.events = event_window.events.size();
     grid.gap_before = event_window.gap_before;
@@ -97,17 +102,48 @@ void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept 
     }
 }
 
-/// As of pixels without events.
+/// As of pixels without events. Where nothing moves, and nothing did when the grid was last used,
+/// no more than each pixel's ages are looked at: a pixel that had events has another one now.
 void Binner::clear(VoxelGrid& grid) noexcept {
-    const std::size_t channels = std::size_t(grid.values.channels());
-    float* out = grid.values.values().data();
-    for (std::uint8_t& age : ages_) {
-        age = std::uint8_t(std::min(age + 1, int(kOldest)));
-        std::fill_n(out, channels - 1, 0.0F);
-        out[channels - 1] = float(age) / float(kOldest);
-        out += channels;
+    constexpr std::size_t kBlock = 64;  // pixels
+    std::uint8_t* const ages = ages_.data();
+    const std::uint8_t* const held = grid.ages.values().data();
+    for (std::size_t begin = 0; begin < ages_.size(); begin += kBlock) {
+        const std::size_t end = std::min(begin + kBlock, ages_.size());
+        std::uint8_t differing = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            ages[i] = std::uint8_t(ages[i] + (ages[i] < kOldest ? 1 : 0));
+            differing = std::uint8_t(differing + (ages[i] != held[i] ? 1 : 0));
+        }
+        if (differing > kBlock / 8)
+            clear_all(begin, end, grid);
+        else if (differing > 0)
+            clear_differing(begin, end, grid);
     }
-    std::ranges::fill(grid.touched.values(), std::uint8_t{0});
+}
+
+void Binner::clear_all(std::size_t begin, std::size_t end, VoxelGrid& grid) const noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    float* const out = grid.values.values().data() + begin * channels;
+    std::fill_n(out, (end - begin) * channels, 0.0F);
+    for (std::size_t i = begin; i < end; ++i) set_age(i, grid);
+    std::fill_n(grid.touched.values().data() + begin, end - begin, std::uint8_t{0});
+}
+
+void Binner::clear_differing(std::size_t begin, std::size_t end, VoxelGrid& grid) const noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    for (std::size_t i = begin; i < end; ++i) {
+        if (grid.ages.values()[i] == ages_[i]) continue;
+        if (std::exchange(grid.touched.values()[i], std::uint8_t{0}) != 0)
+            std::fill_n(grid.values.values().data() + i * channels, channels - 1, 0.0F);
+        set_age(i, grid);
+    }
+}
+
+void Binner::set_age(std::size_t pixel, VoxelGrid& grid) const noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    grid.ages.values()[pixel] = ages_[pixel];
+    grid.values.values()[(pixel + 1) * channels - 1] = float(ages_[pixel]) / float(kOldest);
 }
 
 Binner::BinTicks Binner::ticks_of(int bin, std::int64_t width_us) const {
@@ -118,11 +154,19 @@ Binner::BinTicks Binner::ticks_of(int bin, std::int64_t width_us) const {
 
 /// Sums those of the events that are in the bin.
 void Binner::add(std::span<const Event> events, SensorTime begin, const BinTicks& bin) noexcept {
-    for (const Event& event : events) {
+    constexpr std::size_t kAhead = 16;
+    const auto pixel_of = [this](const Event& event) {
+        return std::size_t(event.y) * std::size_t(width_) + event.x;
+    };
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (i + kAhead < events.size())
+            __builtin_prefetch(&moments_[std::min(pixel_of(events[i + kAhead]), ages_.size() - 1)],
+                               1);
+        const Event& event = events[i];
         const std::int64_t dt = (event.t - begin).count();
         if (dt < bin.first_dt || dt > bin.last_dt || event.x >= width_ || event.y >= height_)
             continue;
-        const std::size_t pixel = std::size_t(event.y) * std::size_t(width_) + event.x;
+        const std::size_t pixel = pixel_of(event);
         const std::uint64_t d = std::uint64_t(dt * bins_ - bin.origin) >> bin.shift;
         Moments& moments = moments_[pixel];
         moments.counts += event.polarity == Polarity::on ? kOn : kOff;
@@ -151,7 +195,7 @@ void Binner::write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept {
                       : float(std::sqrt(scaled_variance(n, moments.sum, moments.squares)) * scale);
             values[3] = float(n);
             age_of_pixel[pixel * channels] = 0;
-            ages_[pixel] = 0;
+            ages_[pixel] = grid.ages.values()[pixel] = 0;
             grid.touched.values()[pixel] = 1;
             moments = {};
         }

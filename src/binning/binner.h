@@ -1,9 +1,12 @@
 // event window -> voxel grid (docs/model.md, "Input").
 #pragma once
 
+#include "src/core/array.h"
 #include "src/core/frame_data.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace eventide {
@@ -22,9 +25,11 @@ public:
     /// Throws Error (usage) unless all are at least 1.
     Binner(int bins, int height, int width);
 
-    VoxelGrid make_output() const;  ///< values of [height][width][4 bins + 1], touched
+    VoxelGrid make_output() const;  ///< values of [height][width][4 bins + 1], touched, ages
 
-    /// `grid` is one from make_output(). Events outside the sensor or the window are left out.
+    /// `grid` is one from make_output(), in which nothing but process() has written since: only
+    /// what differs from its last window is cleared. Events outside the sensor or the window are
+    /// left out.
     void process(const EventWindow& event_window, VoxelGrid& grid) noexcept;
 
     /// As constructed: no pixel has had an event.
@@ -55,10 +60,14 @@ private:
     void add(std::span<const Event> events, SensorTime begin, const BinTicks& bin) noexcept;
     void write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept;
     void clear(VoxelGrid& grid) noexcept;
+    void clear_all(std::size_t begin, std::size_t end, VoxelGrid& grid) const noexcept;
+    void clear_differing(std::size_t begin, std::size_t end, VoxelGrid& grid) const noexcept;
+    void set_age(std::size_t pixel, VoxelGrid& grid) const noexcept;
 
     int bins_, height_, width_;
-    // One bin at a time is summed: at sensor size this stays in the second-level cache.
-    std::vector<Moments, CacheLineAllocator<Moments>> moments_;  // [y][x]; all zero between bins
+    // [y][x]; all zero between bins. One bin at a time is summed: of small sensors this stays in
+    // the second-level cache.
+    std::vector<Moments, HugePageAllocator<Moments>> moments_;
     std::vector<std::uint64_t> touched_;  // a bit per pixel with events in this bin
     std::vector<std::uint8_t> ages_;      // [y][x], windows since the last event, at most kOldest
 };

@@ -46,6 +46,8 @@ struct VoxelGrid : WindowStamp {
     /// [y][x], 1 where the pixel has events in this window, else 0; empty where whoever filled the
     /// values did not keep track.
     Array2<std::uint8_t> touched;
+    /// [y][x], the last channel as a number of windows, 0 to 8; empty likewise.
+    Array2<std::uint8_t> ages;
 };
 
 /// Which parts of a latent map changed when, so that whoever holds an older copy need renew only

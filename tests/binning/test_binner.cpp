@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -232,6 +233,40 @@ TEST(Binner, LeavesNothingOfTheFrameBefore) {
         used.process(event_window_of(events, 0, 1000), grid);
         EXPECT_EQ(grid.values, grid_of(event_window_of(events, 0, 1000), 5).values);
     }
+}
+
+// Of silence, a few pixels and all of them, over as many windows as ages are told apart and more.
+TEST(Binner, AGridThatIsUsedAgainIsAsAFreshOne) {
+    constexpr int kRows = 13, kColumns = 31;  // no whole number of blocks
+    std::mt19937 rng{9};
+    Binner used{2, kRows, kColumns}, fresh{2, kRows, kColumns};
+    std::vector<VoxelGrid> grids(3, used.make_output());
+    const std::size_t counts[] = {0, 0, 1, 5, 40, 2000};
+    for (int round = 0; round < 300; ++round) {
+        std::vector<Event> events(counts[rng() % std::size(counts)]);
+        for (Event& each : events)
+            each = event(1 + std::int64_t(rng() % 1000), int(rng() % kColumns), int(rng() % kRows));
+        const EventWindow window = event_window_of(events, 0, 1000);
+        VoxelGrid& grid = grids[rng() % grids.size()];
+        used.process(window, grid);
+        VoxelGrid expected = fresh.make_output();
+        fresh.process(window, expected);
+        ASSERT_EQ(grid.values, expected.values) << round;
+        ASSERT_EQ(grid.touched, expected.touched) << round;
+        if (rng() % 20 != 0) continue;
+        used.reset();
+        fresh.reset();
+    }
+}
+
+TEST(Binner, WhatItIsToldIsOlderThanCountsIsAsOldAsCounts) {
+    Binner binner{1, 1, 3};
+    binner.restore({0, 9, 255});
+    VoxelGrid grid = binner.make_output();
+    binner.process(event_window_of({}, 0, 100), grid);
+    EXPECT_EQ(grid.values(0, 0, 4), 1.0F / 8);
+    EXPECT_EQ(grid.values(0, 1, 4), 1);
+    EXPECT_EQ(grid.values(0, 2, 4), 1);
 }
 
 TEST(Binner, LeavesOutWhatIsOutsideTheSensorOrTheWindow) {
