@@ -2,7 +2,6 @@
 
 #include "src/core/error.h"
 
-#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -16,12 +15,6 @@ constexpr std::uint8_t kSecondGenerationBoard = 5;
 constexpr auto kReadTimeout = 20ms;
 constexpr auto kBeginTimeout = 1000ms;
 constexpr auto kDropsEvery = 1s;
-
-/// "DAVIS346B of 346x260 px"
-std::string model_text(const SensorInfo& info) {
-    return info.name + " of " + std::to_string(info.width) + "x" + std::to_string(info.height) +
-           " px";
-}
 
 }  // namespace
 
@@ -62,16 +55,6 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
                 : "update it with iniVation's DV or Flashy"));
 }
 
-/// Of a camera without a serial number only the port is known.
-void UsbCamera::require_same(const SensorInfo& found, bool same_words) const {
-    if (info_.width == 0) return;
-    const std::string was = "is a " + model_text(info_) + ", found ";
-    if (found.name != info_.name || found.width != info_.width || found.height != info_.height)
-        refuse(was + "a " + model_text(found) + " in its place");
-    if (!same_words)
-        refuse(was + "one with another orientation, colour filter or IMU in its place");
-}
-
 void UsbCamera::open() {
     const bool first = info_.width == 0;
     SensorInfo info;
@@ -86,21 +69,6 @@ void UsbCamera::open() {
         info_ = std::move(info);
         expect_return_of(identity);
     }
-}
-
-/// The same camera must come back, not another; one without a serial number of its own to the same
-/// port.
-void UsbCamera::expect_return_of(const UsbIdentity& identity) {
-    selector_.bus = selector_.address = -1;
-    if (!options_.reconnect) return;
-    selector_.serial = identity.has_serial ? identity.serial : "";
-    const auto all = identity.has_serial ? list_usb_devices(selector_) : std::vector{identity};
-    const auto alike = std::ranges::count(all, identity.serial, &UsbIdentity::serial);
-    if (!identity.has_serial || alike > 1) selector_.port = identity.port;
-    if (alike > 1 && options_.warn)
-        options_.warn(std::to_string(alike) + " " + kind_.name +
-                      " say that their serial number is '" + identity.serial +
-                      "': if this one is unplugged, it is taken back at its port alone");
 }
 
 std::size_t UsbCamera::packet_bytes() const {
@@ -166,6 +134,7 @@ ReadStatus UsbCamera::read(RawPacket& into) {
     } catch (const Error& error) {  // it is there, and may work once it was opened again
         if (!options_.reconnect || !was_streaming) throw;
         into.bytes.clear();
+        look_for_namesakes_now();
         stop_device();
         warnings_.tell(error);
         return ReadStatus::timeout;
@@ -237,31 +206,6 @@ void UsbCamera::look_at_drops() {
     count(CameraCount::dropped_events,
           *dropped - (*dropped < dropped_until_now_ ? 0 : dropped_until_now_));
     dropped_until_now_ = *dropped;
-}
-
-/// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
-ReadStatus UsbCamera::lost() {
-    close();
-    if (!options_.reconnect) refuse(std::string{"was unplugged"} + kReconnect);
-    return ReadStatus::timeout;
-}
-
-ReadStatus UsbCamera::wait_for_return() {
-    if (!options_.reconnect) return lost();
-    try {
-        open();
-        start();
-        if (stopped_) return ReadStatus::timeout;  // before it began
-        count(CameraCount::reconnects);
-        gap_ = reopened_ = true;
-        warnings_.is_back();
-    } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
-        drops_are_told_ = false;    // of a stream that did not begin
-        stop_device();
-        warnings_.tell(error);
-        std::this_thread::sleep_for(kReadTimeout);
-    }
-    return ReadStatus::timeout;
 }
 
 void UsbCamera::close() {

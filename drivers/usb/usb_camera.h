@@ -102,6 +102,8 @@ private:
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();
     void expect_return_of(const UsbIdentity& identity);
+    void look_for_namesakes(const UsbIdentity& identity);
+    void look_for_namesakes_now();
     ReadStatus lost();
     ReadStatus wait_for_return();
 

@@ -1,5 +1,6 @@
 #include "drivers/v4l2/v4l2_camera.h"
 
+#include "drivers/v4l2/v4l2_controls.h"
 #include "src/codec/prophesee/evt2.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/core/error.h"
@@ -91,17 +92,15 @@ void V4l2Camera::open() {
         const FileDescriptor fd = open_for_controls(holder);
         set_v4l2_controls(fd.get(), holder.string(), settings_.controls, settings_.control_places);
     }
-    device_ = std::make_unique<V4l2Device>(node_, settings_.buffers);
-    const auto encoding = settings_.encoding ? settings_.encoding : encoding_of(device_->fourcc());
-    if (!encoding)
-        throw Error(
-            ErrorKind::device,
-            "the camera " + node_.string() + " gives format '" + fourcc_text(device_->fourcc()) +
-                "', expected PSEE, PSE1, PSE2 or PSE3; where it carries events all the same, "
-                "say encoding = \"evt3\" (and the size) in the camera's settings");
+    device_ = std::make_unique<V4l2Device>(
+        node_, settings_.buffers,
+        [this](std::uint32_t now, std::span<const std::uint32_t> offered) {
+            return choose_format(now, offered);
+        });
+    const EvtEncoding encoding = encoding_given();
     SensorInfo info;
     info.name = device_->card();
-    info.format = coding_of(*encoding).format;
+    info.format = coding_of(encoding).format;
     const auto sensor =
         settings_.subdevice.empty() ? std::nullopt : subdevice_size(settings_.subdevice);
     info.width = settings_.width ? settings_.width : sensor ? sensor->first : device_->width();
@@ -115,11 +114,40 @@ void V4l2Camera::open() {
     if (info_.width == 0) {
         info_ = std::move(info);
         fourcc_ = device_->fourcc();
-        encoding_ = *encoding;
+        encoding_ = encoding;
     } else {
         require_same(info);
     }
     last_sequence_.reset();
+}
+
+/// What another program left may be a format without events; one of which the user says what it
+/// carries stays. A camera that is back is set to what it had.
+std::optional<std::uint32_t> V4l2Camera::choose_format(
+    std::uint32_t now, std::span<const std::uint32_t> offered) const {
+    const auto is_right = [this](std::uint32_t fourcc) {
+        const auto encoding = encoding_of(fourcc);
+        if (fourcc_ != 0) return fourcc == fourcc_;
+        return encoding && (!settings_.encoding || encoding == settings_.encoding);
+    };
+    if (is_right(now) || (settings_.encoding && !encoding_of(now))) return std::nullopt;
+    const auto found = std::ranges::find_if(offered, is_right);
+    return found == offered.end() ? std::nullopt : std::optional{*found};
+}
+
+EvtEncoding V4l2Camera::encoding_given() const {
+    const auto said = encoding_of(device_->fourcc());
+    const std::string gives = "the camera " + node_.string() + " gives format '" +
+                              fourcc_text(device_->fourcc()) + "', expected ";
+    if (said && settings_.encoding && said != settings_.encoding)
+        throw Error(ErrorKind::device, gives + fourcc_text(coding_of(*settings_.encoding).fourcc) +
+                                           ", as encoding in the camera's settings says");
+    if (!said && !settings_.encoding)
+        throw Error(ErrorKind::device,
+                    gives +
+                        "PSEE, PSE1, PSE2 or PSE3; where it carries events all the same, "
+                        "say encoding = \"evt3\" (and the size) in the camera's settings");
+    return said ? *said : *settings_.encoding;
 }
 
 /// Whatever else is at the node by now is not taken for the camera.

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,9 +31,8 @@ enum class EvtEncoding {
 std::optional<EvtEncoding> encoding_of(std::uint32_t fourcc);
 
 struct V4l2Settings {
-    std::optional<EvtEncoding>
-        encoding;               ///< where the driver does not say: "evt2", "evt21", "evt3"
-    int width = 0, height = 0;  ///< px; 0: from the subdevice, else from the format
+    std::optional<EvtEncoding> encoding;  ///< where the driver does not say, or offers several
+    int width = 0, height = 0;            ///< px; 0: from the subdevice, else from the format
     std::filesystem::path
         subdevice;  ///< "/dev/v4l-subdev0": has the controls and the sensor's size
     std::map<std::string, std::int64_t>
@@ -63,6 +63,9 @@ public:
 
 private:
     void open();
+    std::optional<std::uint32_t> choose_format(std::uint32_t now,
+                                               std::span<const std::uint32_t> offered) const;
+    EvtEncoding encoding_given() const;
     void note_sequence(std::uint32_t sequence);
     void require_same(const SensorInfo& found) const;
     ReadStatus lost(const std::string& why);
@@ -84,7 +87,7 @@ private:
 
 std::unique_ptr<Camera> open_v4l2(std::string_view node, const CameraOptions& options);
 
-/// Capture nodes whose format is one of event data.
+/// Capture nodes whose format is one of event data, or can be.
 std::vector<CameraDescription> list_v4l2_cameras();
 
 }  // namespace eventide

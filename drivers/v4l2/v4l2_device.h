@@ -1,4 +1,4 @@
-// A V4L2 capture node: format, controls, and buffers in mapped memory. Facts:
+// A V4L2 capture node: format, and buffers in mapped memory. Facts:
 // docs/protocols.md part C.
 #pragma once
 
@@ -8,14 +8,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+struct v4l2_format;
+
 namespace eventide {
+
+/// To which format a node is to be set, of that it has and those it offers (fourcc); empty: it
+/// stays as it is.
+using FormatChoice =
+    std::function<std::optional<std::uint32_t>(std::uint32_t, std::span<const std::uint32_t>)>;
 
 class V4l2Device {
 public:
@@ -27,9 +34,10 @@ public:
         std::string why{};                 ///< of `lost`: for people
     };
 
-    /// Opens the node and starts streaming into `buffers` mapped buffers. Throws Error (device):
-    /// not there, no permission, no capture device, no streaming, busy.
-    V4l2Device(const std::filesystem::path& node, int buffers);
+    /// Opens the node, sets its format as `choose` says, and starts streaming into `buffers` mapped
+    /// buffers. Throws Error (device): not there, no permission, no capture device, no streaming,
+    /// busy.
+    V4l2Device(const std::filesystem::path& node, int buffers, const FormatChoice& choose);
     ~V4l2Device();
     V4l2Device(const V4l2Device&) = delete;
     V4l2Device& operator=(const V4l2Device&) = delete;
@@ -57,6 +65,8 @@ private:
         std::span<std::byte> bytes_;
     };
     void query();
+    void choose_format(const FormatChoice& choose);
+    void take_format(v4l2_format& format);
     void map_buffers(int wanted);
     void start_streaming();
     Status dequeue(Filled& into);
@@ -74,21 +84,8 @@ private:
     std::optional<std::uint32_t> held_;  ///< the buffer whose bytes are lent out
 };
 
-/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable") or v4l2-ctl lists them
-/// by ("vertical_flip" for "Vertical Flip"), and reads each back;
-/// one that cannot be written has to have the value already. `places` tells where each was said,
-/// for messages. Throws Error (usage) naming the control that is unknown, read-only or out of
-/// range, before any is set.
-void set_v4l2_controls(int fd, const std::string& device,
-                       const std::map<std::string, std::int64_t>& wanted,
-                       const std::map<std::string, std::string>& places = {});
-
-/// A node or subdevice for its controls. Throws Error (device).
-FileDescriptor open_for_controls(const std::filesystem::path& node);
-
-/// Size of the sensor from its subdevice (CROP_BOUNDS); empty where it does not say. Throws Error
-/// (device) for one that cannot be opened.
-std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice);
+/// The formats that a node of this type (V4L2_BUF_TYPE_...) can be set to.
+std::vector<std::uint32_t> offered_formats(int fd, std::uint32_t type);
 
 std::string fourcc_text(std::uint32_t fourcc);
 

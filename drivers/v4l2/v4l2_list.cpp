@@ -6,12 +6,14 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
+#include <iterator>
+#include <vector>
 
 namespace eventide {
 namespace {
 
-/// The node's format and card, without disturbing whoever streams from it; empty where it is no
-/// capture node.
+/// The node's card and the format in which it gives events, or would, without disturbing whoever
+/// streams from it; empty where it is no capture node or gives none.
 std::optional<std::pair<std::uint32_t, std::string>> ask(const std::filesystem::path& node) {
     const FileDescriptor fd{::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)};
     v4l2_capability capability{};
@@ -25,7 +27,12 @@ std::optional<std::pair<std::uint32_t, std::string>> ask(const std::filesystem::
         const std::uint32_t fourcc = type == V4L2_BUF_TYPE_VIDEO_CAPTURE
                                          ? format.fmt.pix.pixelformat
                                          : format.fmt.pix_mp.pixelformat;
-        return std::pair{fourcc, std::string{reinterpret_cast<const char*>(capability.card)}};
+        std::vector<std::uint32_t> formats{fourcc};
+        std::ranges::copy(offered_formats(fd.get(), type), std::back_inserter(formats));
+        const auto found =
+            std::ranges::find_if(formats, [](auto f) { return encoding_of(f).has_value(); });
+        if (found == formats.end()) return std::nullopt;
+        return std::pair{*found, std::string{reinterpret_cast<const char*>(capability.card)}};
     }
     return std::nullopt;
 }
@@ -41,7 +48,7 @@ std::vector<CameraDescription> list_v4l2_cameras() {
     std::vector<CameraDescription> cameras;
     for (const auto& node : nodes) {
         const auto answer = ask(node);
-        if (!answer || !encoding_of(answer->first)) continue;
+        if (!answer) continue;
         CameraDescription camera;
         camera.source = "v4l2:" + node.string();
         camera.name = answer->second + " (" + fourcc_text(answer->first) + ")";

@@ -110,10 +110,8 @@ OpenedStream open_evt2(Bytes first_bytes, const OpenOptions& options) {
 }
 
 OpenedStream open_evt21(Bytes first_bytes, const OpenOptions& options) {
-    using Order = Evt21Parser::Order;
     const EvtHeader header = evt_header(first_bytes, options);
-    const Order order = header.halves_swapped ? Order::upper_half_first : Order::lower_half_first;
-    const auto make_parser = [order](const StreamHeader& stream) {
+    const auto make_parser = [order = Evt21Parser::order_of(header)](const StreamHeader& stream) {
         return std::make_unique<Evt21Parser>(stream.width, stream.height, order);
     };
     return {header.stream, make_parser, by_skimming<Evt21Parser>()};

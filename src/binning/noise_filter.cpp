@@ -163,7 +163,7 @@ void NoiseFilter::end_interval() noexcept {
 
 void NoiseFilter::set_noise(double hz) noexcept {
     noise_hz_ = hz;
-    const double us = hz > 0 ? 1e6 * kExpected / (8 * hz) : double(settings_.longest.count());
+    const double us = 1e6 * kExpected / (8 * hz);  // infinite without noise
     const auto clamped = [this](double time_us) {
         return std::clamp(SensorDuration{std::int64_t(std::min(time_us, 1e9))}, settings_.shortest,
                           settings_.longest);

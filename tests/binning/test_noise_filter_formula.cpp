@@ -50,7 +50,7 @@ private:
 
     /// Two neighbours are there by chance for 6 % of the noise's events.
     SensorDuration time(double share) const {
-        const double us = noise_hz_ > 0 ? 1e6 * .4 / (8 * noise_hz_) : 500'000;
+        const double us = 1e6 * .4 / (8 * noise_hz_);
         return std::clamp(SensorDuration{std::int64_t(std::min(1e9, share * us))},
                           settings_.shortest, settings_.longest);
     }

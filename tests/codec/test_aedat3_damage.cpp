@@ -109,6 +109,44 @@ TEST(Aedat3, AResetBeforeAJumpIsOver) {
     EXPECT_EQ(parser->damaged()[DamageReason::time_backwards], 2U);
 }
 
+/// Packets of 40 events, a millisecond apart, with these overflows: damage in it sets all of them
+/// off together.
+Bytes packets_of_events(const std::vector<std::uint32_t>& overflows) {
+    Bytes bytes;
+    std::uint32_t stamp = 1000;
+    for (const std::uint32_t overflow : overflows) {
+        std::vector<std::uint32_t> records;
+        for (int i = 0; i < 40; ++i) {
+            records.push_back(polarity(5, 7, true));
+            records.push_back(stamp++);
+        }
+        bytes = bytes + packet_header(1, 8, 40, overflow) + words(records);
+        stamp += 960;
+    }
+    return bytes;
+}
+
+TEST(Aedat3, AFlippedBitInAPacketsOverflowCostsThatPacket) {
+    for (const std::uint32_t bit : {1U, 8U, 1U << 20}) {
+        const Bytes bytes = packets_of_events({0, 0, bit, 0, 0});
+        const Parsed parsed = parse_whole(make_parser(), bytes);
+        EXPECT_EQ(parsed.data.events.size(), 160U) << bit;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 40U) << bit;
+        EXPECT_EQ(parsed.damage.total(), 40U) << bit;
+        EXPECT_EQ(parsed.data.events.back().t, from_us(5039));
+        expect_same_for_any_split(make_parser(), bytes);
+    }
+}
+
+TEST(Aedat3, AnOverflowThatThePacketsBehindItHaveAsWellIsARealOne) {
+    const Parsed parsed = parse_whole(make_parser(), packets_of_events({0, 0, 1, 1}));
+    EXPECT_EQ(parsed.data.events.size(), 160U);
+    EXPECT_EQ(parsed.damage.total(), 0U);
+    const Parsed last = parse_whole(make_parser(), packets_of_events({0, 0, 1}));
+    EXPECT_EQ(last.data.events.size(), 120U) << "nothing contradicts the last one";
+    EXPECT_EQ(last.damage.total(), 0U);
+}
+
 TEST(Aedat3, AFrameThatEndsBeforeItBeginsIsDamage) {
     const Bytes bytes =
         packet_header(2, 36 + 4, 1) + words({1U | 1U << 1, 0, 9, 9, 8, 1, 1, 0, 0, 7});

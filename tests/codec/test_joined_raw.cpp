@@ -16,7 +16,11 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr const char* kRawHeader = "% Date 2020-09-14 09:03:25\n% evt 2.0\n% end\n";
+/// Of a RAW file, before its words.
+std::string header_of(const std::string& version) {
+    return "% Date 2020-09-14 09:03:25\n% evt " + version + "\n% end\n";
+}
+const std::string kDatHeader = "% Data file containing CD events.\n% Version 2\n\x0C\x08";
 
 Bytes join(const std::vector<Bytes>& parts) {
     Bytes all;
@@ -61,14 +65,13 @@ Bytes dat_file(std::uint32_t t) {
 
 std::vector<Joined> all_formats() {
     return {
-        {"evt2", evt2::kMake2, evt2_file(1000), evt2_file(10), kRawHeader, 64'005, 645},
+        {"evt2", evt2::kMake2, evt2_file(1000), evt2_file(10), header_of("2.0"), 64'005, 645},
         {"evt21", evt2::make21(evt2::Order::lower_half_first), evt21_file(1000), evt21_file(10),
-         kRawHeader, 64'005, 645},
+         header_of("2.1"), 64'005, 645},
         {"evt3", [] { return std::make_unique<Evt3Parser>(640, 480); }, evt3_file(1000),
-         evt3_file(10), kRawHeader, 1000 * 4096 + 5, 10 * 4096 + 5},
+         evt3_file(10), header_of("3.0"), 1000 * 4096 + 5, 10 * 4096 + 5},
         {"dat", [] { return std::make_unique<DatParser>(DatHeader::Record::events_v2, 640, 480); },
-         dat_file(5000), dat_file(100), "% Data file containing CD events.\n% Version 2\n\x0C\x08",
-         5000, 100}};
+         dat_file(5000), dat_file(100), kDatHeader, 5000, 100}};
 }
 
 TEST(JoinedRaw, TheNextFileIsReadOnAndBeginsANewStreamWhereItIsEarlier) {
@@ -167,10 +170,72 @@ TEST(JoinedRaw, TheTimeThatOurOwnFilesOfEvt3CountFromIsItsOwn) {
     EXPECT_EQ(back.data.triggers.size(), 1U);
 }
 
+TEST(JoinedRaw, AFileOfAnotherFormatIsNotReadAndTheOneBehindItIs) {
+    const std::vector<Joined> formats = all_formats();
+    for (const Joined& files : formats)
+        for (const Joined& others : formats) {
+            if (files.header == others.header) continue;
+            const Bytes bytes = join({files.first, to_bytes(others.header), others.first,
+                                      to_bytes(files.header), files.second});
+            const Parsed parsed = parse_whole(files.make, bytes);
+            const std::string pair = std::string{files.name} + " and " + others.name;
+            ASSERT_EQ(parsed.data.events.size(), 4U) << pair;
+            EXPECT_EQ(parsed.data.events[2].t, from_us(files.second_us)) << pair;
+            EXPECT_EQ(parsed.data.triggers.size(), 1U) << pair;
+            EXPECT_GT(parsed.damage[DamageReason::unknown_word], 0U) << pair;
+            EXPECT_LE(parsed.damage.total(), parsed.damage[DamageReason::unknown_word] + 1) << pair;
+            expect_same_for_any_split(files.make, bytes);
+        }
+}
+
+TEST(JoinedRaw, AHeaderThatDoesNotSayTheFormatIsOfTheSame) {
+    for (const Joined& files : all_formats()) {
+        if (files.header == kDatHeader) continue;
+        const Bytes bytes =
+            join({files.first, to_bytes("% Date 2014-02-28 13:37:42\n"), files.second});
+        EXPECT_EQ(parse_whole(files.make, bytes).data.events.size(), 4U) << files.name;
+    }
+    const Bytes unknown =
+        join({evt3_file(10), to_bytes("% format HISTO3D\n% end\n"), evt3_file(1000)});
+    EXPECT_EQ(parse_whole(all_formats()[2].make, unknown).data.events.size(), 2U);
+}
+
+TEST(JoinedRaw, TheHalvesOfEvt21ComeInTheOrderOfTheirOwnFile) {
+    const Bytes swapped = evt2::to_stream(
+        evt2::Pairs{
+            {evt2::time_high(2000), 0}, {evt2::cd(5, 7, 2, true), 1}, {evt2::time_high(2001), 0}},
+        evt2::Order::upper_half_first);
+    const Bytes bytes =
+        join({evt21_file(1000), to_bytes("% format EVT21;endianness=legacy\n% end\n"), swapped,
+              to_bytes(header_of("2.1")), evt21_file(3000)});
+    const Parsed parsed = parse_whole(evt2::make21(evt2::Order::lower_half_first), bytes);
+    ASSERT_EQ(parsed.data.events.size(), 5U);
+    EXPECT_EQ(parsed.data.events[2], (Event{from_us(2000 * 64 + 5), 7, 2, Polarity::on}));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
+TEST(JoinedRaw, RecordsOfDatAreOfTheKindThatTheirOwnFileSays) {
+    const Bytes triggers = dat_file(7000);
+    const Bytes bytes =
+        join({dat_file(5000), to_bytes("% Data file containing triggers.\n\x0E\x08"), triggers,
+              to_bytes(kDatHeader), dat_file(9000)});
+    const auto make = all_formats()[3].make;
+    const Parsed parsed = parse_whole(make, bytes);
+    EXPECT_EQ(parsed.data.events.size(), 4U);
+    ASSERT_EQ(parsed.data.triggers.size(), 2U);
+    EXPECT_EQ(parsed.data.triggers[0].t, from_us(7000));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+    expect_same_for_any_split(make, bytes);
+    const Parsed unknown = parse_whole(
+        make, join({dat_file(5000), to_bytes("% Version 2\n\x18\x08"), dat_file(7000)}));
+    EXPECT_EQ(unknown.data.events.size(), 2U);
+    EXPECT_EQ(unknown.damage[DamageReason::unknown_word], 2U);
+}
+
 /// The next file's times have nothing to do with the range of those before.
 TEST(JoinedRaw, AFallToTheNextFileIsNoWrap) {
     const Parsed parsed = parse_whole(
-        evt2::kMake2, join({evt2_file(0x0FFFFF00), to_bytes(kRawHeader), evt2_file(10)}));
+        evt2::kMake2, join({evt2_file(0x0FFFFF00), to_bytes(header_of("2.0")), evt2_file(10)}));
     ASSERT_EQ(parsed.data.events.size(), 4U);
     EXPECT_EQ(parsed.data.events[2].t, from_us(10 * 64 + 5));
 }
@@ -202,7 +267,9 @@ TEST(JoinedRaw, AHeaderEndsWhereItsLinesDo) {
     EXPECT_EQ(told_by("% evt 3.0\n% end\n% x\n"), "[% evt 3.0\n% end\n]% x\n");
     EXPECT_EQ(told_by("% evt 3.0\n% end\r\n% x\n"), "[% evt 3.0\n% end\r\n]% x\n");
     EXPECT_EQ(told_by("% evt 3.0\n% a\x01 b\n"), "[% evt 3.0\n]% a\x01 b\n");
-    EXPECT_EQ(told_by("% Date x\n\x0C\x08 a", 2), "[% Date x\n] a");
+    EXPECT_EQ(told_by("% Date x\n\x0C\x08 a", 2), "[% Date x\n\x0C\x08] a");
+    EXPECT_EQ(told_by("% Date x\n\x0C", 2), "[% Date x\n\x0C]");
+    EXPECT_EQ(told_by("% Date x\n% end\n%%a", 2), "[% Date x\n% end\n%%]a");
     EXPECT_EQ(told_by("a% evt 3.0\nb% evt 3.0\nc"), "a[% evt 3.0\n]b[% evt 3.0\n]c");
 }
 

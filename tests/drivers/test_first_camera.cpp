@@ -143,6 +143,42 @@ TEST_P(FirstCamera, OneWhoseSerialNumberAnotherHasTooIsTakenBackAtItsPortAlone) 
     EXPECT_TRUE(packet.reopened);
 }
 
+TEST_P(FirstCamera, OneThatSaysTheSameSerialNumberAndCameLaterIsNotTakenForIt) {
+    one().plug_in(davis("00000042"), {.port = 2 + GetParam(), .address = 5 + GetParam()});
+    DavisOptions named = any();
+    named.reconnect = true;
+    DavisCamera camera{named};
+    other().plug_in(davis("00000042"), {.port = 3 - GetParam(), .address = 6 - GetParam()});
+    unplug_while_sending(camera, one());
+    RawPacket packet;
+    for (int look = 0; look < 5; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("2 DAVIS say that their serial number is "
+                                                 "'00000042'"),
+                                       HasSubstr("at port 1-" + std::to_string(2 + GetParam()))));
+    one().plug_in(davis("00000042"), {.port = 2 + GetParam(), .address = 9});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+}
+
+/// Whichever of the two libusb lists first.
+TEST_P(FirstCamera, NorInThePlaceOfOneThatStalls) {
+    one().plug_in(davis("00000042"), {.port = 2 + GetParam(), .address = 5 + GetParam()});
+    DavisOptions named = any();
+    named.reconnect = true;
+    DavisCamera camera{named};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    const auto namesake = davis("00000042");
+    other().plug_in(namesake, {.port = 3 - GetParam(), .address = 6 - GetParam()});
+    one().halt_data(1000);
+    while (warnings_.size() < 2) camera.read(packet);
+    one().halt_data(0);
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_TRUE(namesake->writes().empty());
+}
+
 TEST_P(FirstCamera, CamerasThatSayTheSameSerialNumberAreListedByTheirPlaces) {
     plug_in(davis("00000042"), davis("00000042"));
     std::vector<std::string> sources;

@@ -221,7 +221,6 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     V4l2Testbed bed{sensor()};
     std::vector<std::string> warnings;
     auto camera = open({}, true, test::keep_in(warnings));
-    constexpr std::uint32_t kEvt21 = v4l2_fourcc('P', 'S', 'E', '2');
     const auto come_back = [&](std::uint32_t fourcc, int width, int height) {
         bed.change_format(fourcc, width, height);
         RawPacket packet;
@@ -245,6 +244,20 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
+TEST(V4l2Camera, OneThatComesBackInAnotherFormatIsSetToTheOneItHad) {
+    V4l2NodeSettings settings = sensor();
+    settings.offers = {kEvt21, kEvt3};
+    V4l2Testbed bed{settings};
+    auto camera = open({}, true);
+    bed.change_format(kEvt21, 320, 320);
+    bed.fail_next("DQBUF", EIO);
+    bed.give({bytes_of({time_high(0)})});
+    RawPacket packet;
+    for (int look = 0; look < 3 && !packet.reopened; ++look) camera.read(packet);
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_EQ(bed.fourcc(), kEvt3);
 }
 
 /// Where the user says that a format means events, the format alone does not tell a camera.

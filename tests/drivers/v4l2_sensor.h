@@ -16,7 +16,10 @@
 
 namespace eventide::testing_support::v4l2 {
 
-constexpr std::uint32_t kEvt3 = v4l2_fourcc('P', 'S', 'E', '3');
+constexpr std::uint32_t kEvt2 = v4l2_fourcc('P', 'S', 'E', 'E'),
+                        kEvt21Swapped = v4l2_fourcc('P', 'S', 'E', '1'),
+                        kEvt21 = v4l2_fourcc('P', 'S', 'E', '2'),
+                        kEvt3 = v4l2_fourcc('P', 'S', 'E', '3');
 
 inline std::vector<std::byte> bytes_of(std::initializer_list<unsigned> words) {
     std::vector<std::byte> bytes;
@@ -61,6 +64,19 @@ inline std::string failure_of(const std::function<void()>& what) {
         return error.what();
     }
     return "nothing was thrown";
+}
+
+/// Until everything given was taken.
+inline Batch read_all(V4l2Camera& camera, const V4l2Testbed& bed) {
+    const auto parser = camera.make_parser();
+    Batch data;
+    for (RawPacket packet;;) {
+        const ReadStatus status = camera.read(packet);
+        if (status == ReadStatus::data) parser->parse(packet.bytes, data);
+        if (status == ReadStatus::end || (status == ReadStatus::timeout && bed.all_taken())) break;
+    }
+    parser->finish(data);  // a first time waits for the next
+    return data;
 }
 
 }  // namespace eventide::testing_support::v4l2

@@ -71,6 +71,7 @@ void Aedat3Parser::begin_packet(const Aedat3Packet& packet) {
         state_ = State::passing_over;
     } else {
         if (!source_) source_ = packet.source;
+        content_.begin(packet);
         left_ = packet.number;
         state_ = State::records;
     }

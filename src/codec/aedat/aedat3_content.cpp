@@ -27,7 +27,8 @@ struct PolarityWord {
 Aedat3Content::Aedat3Content(bool lower_left, int rows, int width, int height)
     : lower_left_(lower_left),
       rows_(std::uint64_t(rows)),
-      validator_(std::uint64_t(width), std::uint64_t(height)) {}
+      validator_(std::uint64_t(width), std::uint64_t(height),
+                 EventValidator::LeapEnds::with_next_packet) {}
 
 void Aedat3Content::move_clock(std::int64_t t_us) {
     newest_us_ = std::max(newest_us_.value_or(t_us), t_us);
@@ -148,9 +149,13 @@ void Aedat3Content::take_frame(std::span<const std::byte> record, Batch& into) {
     into.add_image(std::move(*image));
 }
 
+void Aedat3Content::begin(const Aedat3Packet& packet) {
+    base_us_ = std::int64_t(packet.overflow) << 31;
+    if (Aedat3Type(packet.type) == Aedat3Type::polarity) validator_.end_packet();
+}
+
 void Aedat3Content::take(const Aedat3Packet& packet, std::span<const std::byte> records,
                          Batch& into) {
-    base_us_ = std::int64_t(packet.overflow) << 31;
     if (Aedat3Type(packet.type) == Aedat3Type::polarity) return take_events(records, into);
     for (; !records.empty(); records = records.subspan(packet.record_bytes))
         take_one(Aedat3Type(packet.type), records.first(packet.record_bytes), into);

@@ -21,6 +21,8 @@ public:
     /// last of the sensor's.
     Aedat3Content(bool lower_left, int rows, int width, int height);
 
+    /// What take() gets next is the packet's beginning.
+    void begin(const Aedat3Packet& packet);
     /// Whole records of the packet.
     void take(const Aedat3Packet& packet, std::span<const std::byte> records, Batch& into);
     /// What follows is of another file.

@@ -74,9 +74,9 @@ DatParser::DatParser(DatHeader::Record record, int width, int height)
 void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(
         bytes, [&](auto records) { take(records, into); },
-        [&](auto) {
+        [&](auto header) {
             end_file(into);
-            begin_file();
+            begin_file(header);
         });
 }
 
@@ -87,6 +87,7 @@ std::int64_t DatParser::unwrapped(std::uint32_t stamp, std::int64_t near_us) {
 }
 
 void DatParser::take(std::span<const std::byte> records, Batch& into) {
+    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, records.size() / 8);
     Event* const out = block_.data();
     const bool version_1 = record_ == DatHeader::Record::events_v1;
     std::size_t n = 0;
@@ -160,10 +161,13 @@ void DatParser::end_file(Batch& into) {
     let_trigger_go(into);
 }
 
-void DatParser::begin_file() {
+void DatParser::begin_file(std::span<const std::byte> header) {
     const auto last = clock();
     resync();
     if (last) seam_.begin_file(to_us(*last));
+    const auto found = find_dat_header(header);
+    is_of_other_format_ = !found;
+    if (found) record_ = found->record;
 }
 
 void DatParser::resync() {

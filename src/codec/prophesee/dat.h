@@ -26,7 +26,8 @@ std::optional<DatHeader> find_dat_header(std::span<const std::byte> first_bytes)
 DatHeader read_dat_header(std::span<const std::byte> first_bytes);
 
 /// Reads the records after the header. Times are the file's own, with wraps of the 32 bits counted.
-/// A file that was joined behind another begins a new stream.
+/// A file that was joined behind another begins a new stream, of its own kind of records; words of
+/// one of another format count as unknown.
 class DatParser final : public Parser {
 public:
     /// Size in px, 0 when not known (then what the record's bits hold).
@@ -45,12 +46,13 @@ private:
     void take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into);
     void let_trigger_go(Batch& into);
     void end_file(Batch& into);
-    void begin_file();
+    void begin_file(std::span<const std::byte> header);
 
     DatHeader::Record record_;
     EventValidator validator_;
     JoinedWords<8> words_{kBytesBehindLines};
     FileSeam seam_;
+    bool is_of_other_format_ = false;  ///< the joined file
     EventBlock block_;
     Damage damage_;
     std::int64_t last_trigger_us_ = kNoTime;  ///< of those taken

@@ -115,10 +115,11 @@ void Evt2Base::begin_anew() {
     newest_us_ = last_event_us_ = kNoTime;
 }
 
-void Evt2Base::begin_file() {
+void Evt2Base::begin_file(std::span<const std::byte> header, std::string_view format) {
     seam_.begin_file(last_event_us_);
     begin_anew();
     high_ = no_time_yet();
+    is_of_other_format_ = is_of_other_format(header, format);
 }
 
 void Evt2Base::reopened() {
@@ -134,13 +135,14 @@ void Evt2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     high_.hand_out(into);
     words_.feed(
         bytes, [&](auto words) { take(words, into); },
-        [&](auto) {
+        [&](auto header) {
             end_file(into);
-            begin_file();
+            begin_file(header, "evt2");
         });
 }
 
 void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
+    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 4);
     Event* const out = block_.data();
     const std::uint32_t width = width_, height = height_;
     std::int64_t high_us = high_.us(), last_us = last_event_us_;
@@ -193,17 +195,24 @@ void Evt2Parser::resync() {
     begin_anew();
 }
 
+Evt21Parser::Order Evt21Parser::order_of(const EvtHeader& header) {
+    return header.halves_swapped ? Order::upper_half_first : Order::lower_half_first;
+}
+
 void Evt21Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     high_.hand_out(into);
     words_.feed(
         bytes, [&](auto words) { take(words, into); },
-        [&](auto) {
+        [&](auto header) {
             end_file(into);
-            begin_file();
+            begin_file(header, "evt21");
+            const auto found = find_evt_header(header);
+            if (found && found->stream.format == "evt21") order_ = order_of(*found);
         });
 }
 
 void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
+    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 8);
     Event* const out = block_.data();
     const std::uint32_t width = width_, height = height_;
     const std::size_t upper_at = order_ == Order::upper_half_first ? 0 : 4;

@@ -3,19 +3,22 @@
 #pragma once
 
 #include "src/codec/parser.h"
+#include "src/codec/prophesee/evt_header.h"
 #include "src/codec/prophesee/evt_words.h"
 #include "src/codec/prophesee/joined_words.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 
 namespace eventide {
 
 /// The part that EVT2 and EVT2.1 share. Reads bare words: what follows a file's header, or what a
 /// camera sends. Times are the stream's own, with wraps of the 34 bits counted from the first. What
 /// comes before the first time is passed over. A file that was joined behind another begins a new
-/// stream.
+/// stream; words of one of another format count as unknown.
 class Evt2Base : public Parser {
 public:
     void reopened() override;
@@ -34,7 +37,7 @@ protected:
     /// Nothing contradicts any more what waits for its time to be sure.
     void end(Batch& into);
     void begin_anew();
-    void begin_file();
+    void begin_file(std::span<const std::byte> header, std::string_view format);
     void move_clock(std::int64_t t_us) {
         if (t_us > newest_us_) newest_us_ = t_us;
     }
@@ -44,6 +47,7 @@ protected:
     EventBlock block_;
     EvtTimeHigh high_;
     FileSeam seam_;
+    bool is_of_other_format_ = false;       ///< the joined file
     std::int64_t newest_us_ = kNoTime;      ///< told
     std::int64_t last_event_us_ = kNoTime;  ///< of the events taken
 
@@ -70,6 +74,7 @@ public:
     /// In files of "endianness legacy" and from V4L2 nodes of format PSE1 the upper half of each
     /// word comes first.
     enum class Order { lower_half_first, upper_half_first };
+    static Order order_of(const EvtHeader& header);
 
     explicit Evt21Parser(int width = 0, int height = 0, Order order = Order::lower_half_first)
         : Evt2Base(width, height), order_(order) {}

@@ -54,6 +54,7 @@ void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
 
 /// Rows, single events, vectors and times that grow, while nothing is wrong.
 void Evt3Parser::take(std::span<const std::byte> words, Batch& into) {
+    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 2);
     Event* const out = block_.data();
     const std::uint32_t width = width_;
     std::int64_t t = t_us_;
@@ -251,6 +252,7 @@ void Evt3Parser::begin_file(std::span<const std::byte> header) {
     seam_.begin_file(last_event_us_ == kNoTime ? kNoTime : last_event_us_ + time_base_us_);
     resync();
     high_ = no_time_yet();
+    is_of_other_format_ = is_of_other_format(header, "evt3");
     if (const auto found = find_evt_header(header)) time_base_us_ = found->time_base_us;
 }
 

@@ -15,7 +15,8 @@ namespace eventide {
 
 /// Reads bare words: what follows a file's header, or what a camera sends. Times are the stream's
 /// own, with wraps of the 24 bits counted from the first. What comes before the first time is
-/// passed over. A file that was joined behind another begins a new stream.
+/// passed over. A file that was joined behind another begins a new stream; words of one of another
+/// format count as unknown.
 class Evt3Parser final : public Parser {
 public:
     /// Size in px, 0 when not known (then 2048, the most the format holds).
@@ -53,6 +54,7 @@ private:
 
     EvtTimeHigh high_;
     FileSeam seam_;
+    bool is_of_other_format_ = false;   ///< the joined file
     std::int64_t t_us_ = 0;             ///< of the word being read, without time_base_us_
     std::int64_t newest_us_ = kNoTime;  ///< told
     std::int64_t last_event_us_ = kNoTime;

@@ -185,6 +185,12 @@ std::string evt_format_said(std::span<const std::byte> first_bytes) {
     return std::string(name.substr(0, kLongestName));
 }
 
+bool is_of_other_format(std::span<const std::byte> header, std::string_view format) {
+    if (const auto found = find_evt_header(header)) return found->stream.format != format;
+    const bool is_dat = !read_percent_lines(header).value("Data").empty();  // "% Data file ..."
+    return is_dat || !evt_format_said(header).empty();
+}
+
 EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format) {
     EvtHeader header;
     header.stream.format = format;

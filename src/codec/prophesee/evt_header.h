@@ -43,6 +43,10 @@ std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes)
 /// Empty where they do not say it.
 std::string evt_format_said(std::span<const std::byte> first_bytes);
 
+/// Whether the header of a RAW or DAT file says that words of another format than this one of RAW
+/// ("evt3") follow it. Old ones say nothing.
+bool is_of_other_format(std::span<const std::byte> header, std::string_view format);
+
 /// Of a RAW file whose lines, if any, do not say the format.
 EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format);
 

@@ -25,29 +25,31 @@ public:
     /// `behind_lines`: bytes of a header behind its lines.
     explicit JoinedWords(std::size_t behind_lines = 0) : behind_lines_(behind_lines) {}
 
-    /// Calls use(span of whole words), and behind each header joint(its lines), while
+    /// Calls use(span of whole words), and behind each header joint(the header), while
     /// is_half_read() says whether the file before it ended within a word.
     template <typename Use, typename Joint>
     void feed(Bytes bytes, Use&& use, Joint&& joint) {
         while (!bytes.empty())
-            bytes = in_header_ ? pass_header(bytes, use, joint) : pass_words(bytes, use);
+            bytes = in_header_     ? pass_lines(bytes, use, joint)
+                    : missing_ > 0 ? pass_behind_lines(bytes, joint)
+                                   : pass_words(bytes, use);
     }
     /// The stream is over: what looked like the beginning of a header was none.
     template <typename Use, typename Joint>
     void finish(Use&& use, Joint&& joint) {
-        if (in_header_)
-            end_header("", use, joint);
+        if (in_header_ || missing_ > 0)
+            end_header(joint);
         else
-            take(bytes_of(std::exchange(line_, {})), use);
+            words_.feed(bytes_of(std::exchange(line_, {})), use);
     }
 
     bool is_half_read() const { return words_.is_half_read(); }
     void drop() {
         words_.drop();
-        lines_.clear();
+        header_.clear();
         line_.clear();
         in_header_ = false;
-        passing_over_ = 0;
+        missing_ = 0;
     }
 
 private:
@@ -86,13 +88,6 @@ private:
                      : bytes.size();
     }
 
-    template <typename Use>
-    void take(Bytes bytes, Use& use) {
-        const std::size_t n = std::min(passing_over_, bytes.size());
-        passing_over_ -= n;
-        words_.feed(bytes.subspan(n), use);
-    }
-
     /// Up to the end of the bytes, or behind what a header begins with.
     template <typename Use>
     Bytes pass_words(Bytes bytes, Use& use) {
@@ -100,7 +95,7 @@ private:
             std::size_t n = next_percent(bytes, 0);
             while (n < bytes.size() && !may_begin_header(bytes.subspan(n)))
                 n = next_percent(bytes, n + 1);
-            take(bytes.first(n), use);
+            words_.feed(bytes.first(n), use);
             if (n == bytes.size()) return {};
             line_ = '%';
             return bytes.subspan(n + 1);
@@ -109,40 +104,54 @@ private:
         in_header_ = begins_header(line_);
         if (may_begin_header(line_)) return bytes.subspan(1);
         line_.pop_back();  // what follows it may begin one
-        take(bytes_of(std::exchange(line_, {})), use);
+        words_.feed(bytes_of(std::exchange(line_, {})), use);
         return bytes;
     }
 
     /// Line by line, up to what is none.
     template <typename Use, typename Joint>
-    Bytes pass_header(Bytes bytes, Use& use, Joint& joint) {
+    Bytes pass_lines(Bytes bytes, Use& use, Joint& joint) {
         line_ += char(bytes[0]);
         bytes = bytes.subspan(1);
         if (!is_percent_line_so_far(line_)) {
-            end_header(std::exchange(line_, {}), use, joint);
+            end_lines(std::exchange(line_, {}), use, joint);
         } else if (line_.ends_with('\n')) {
-            if (lines_.size() < kEnough) lines_ += line_;
-            const bool is_last = is_last_percent_line(std::exchange(line_, {}));
-            if (is_last) end_header("", use, joint);
+            if (header_.size() < kEnough) header_ += line_;
+            if (is_last_percent_line(std::exchange(line_, {}))) end_lines("", use, joint);
         }
         return bytes;
     }
 
+    /// `data`: what looked like one more line, so far.
     template <typename Use, typename Joint>
-    void end_header(const std::string& data, Use& use, Joint& joint) {
-        const std::string lines = std::exchange(lines_, {});
-        joint(bytes_of(lines));
+    void end_lines(const std::string& data, Use& use, Joint& joint) {
+        in_header_ = false;
+        missing_ = behind_lines_;
+        words_.feed(pass_behind_lines(bytes_of(data), joint), use);
+    }
+
+    template <typename Joint>
+    Bytes pass_behind_lines(Bytes bytes, Joint& joint) {
+        const std::size_t n = std::min(missing_, bytes.size());
+        header_.append(reinterpret_cast<const char*>(bytes.data()), n);
+        missing_ -= n;
+        if (missing_ == 0) end_header(joint);
+        return bytes.subspan(n);
+    }
+
+    template <typename Joint>
+    void end_header(Joint& joint) {
+        const std::string header = std::exchange(header_, {});
+        joint(bytes_of(header));
         drop();
-        passing_over_ = behind_lines_;
-        take(bytes_of(data), use);
     }
 
     std::size_t behind_lines_;
     WholeWords<kBytes> words_;
-    std::string lines_;  ///< of a header, so far
-    std::string line_;   ///< of a header, so far, or what may begin one
+    std::string header_;  ///< so far, in whole lines, with what stands behind them
+    std::string line_;    ///< of a header, so far, or what may begin one
     bool in_header_ = false;
-    std::size_t passing_over_ = 0;  ///< bytes behind a header's lines
+    std::size_t missing_ = 0;  ///< bytes behind a header's lines
 };
 
 }  // namespace eventide

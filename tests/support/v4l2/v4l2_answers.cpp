@@ -21,6 +21,8 @@ const char* name_of(gulong request) {
             return "QUERYCAP";
         case VIDIOC_G_FMT:
             return "G_FMT";
+        case VIDIOC_ENUM_FMT:
+            return "ENUM_FMT";
         case VIDIOC_S_FMT:
             return "S_FMT";
         case VIDIOC_REQBUFS:
@@ -101,16 +103,14 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
             });
         case VIDIOC_G_FMT:
             return with<v4l2_format>(arg, [&](v4l2_format& f, auto*) {
-                auto& pix = f.fmt.pix;
-                if (settings.multi_planar) {
-                    f.fmt.pix_mp.pixelformat = settings.fourcc;
-                    f.fmt.pix_mp.width = std::uint32_t(settings.width);
-                    f.fmt.pix_mp.height = std::uint32_t(settings.height);
-                } else {
-                    pix.pixelformat = settings.fourcc;
-                    pix.width = std::uint32_t(settings.width);
-                    pix.height = std::uint32_t(settings.height);
-                }
+                if (!settings.output && f.type != capture_type()) return EINVAL;
+                say_format(f);
+                return 0;
+            });
+        case VIDIOC_ENUM_FMT:
+            return with<v4l2_fmtdesc>(arg, [&](v4l2_fmtdesc& d, auto*) {
+                if (d.type != capture_type() || d.index >= settings.offers.size()) return EINVAL;
+                d.pixelformat = settings.offers[d.index];
                 return 0;
             });
         case VIDIOC_S_FMT:
@@ -195,12 +195,38 @@ int V4l2Testbed::Parts::answer_controls(gulong request, UMockdevIoctlData* arg) 
     }
 }
 
-int V4l2Testbed::Parts::set_format(v4l2_format& format) const {
+std::uint32_t V4l2Testbed::Parts::capture_type() const {
+    return settings.multi_planar ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE;
+}
+
+void V4l2Testbed::Parts::say_format(v4l2_format& format) const {
+    const auto say = [this](auto& pixels) {
+        pixels.pixelformat = settings.fourcc;
+        pixels.width = std::uint32_t(settings.width);
+        pixels.height = std::uint32_t(settings.height);
+    };
+    if (settings.multi_planar)
+        say(format.fmt.pix_mp);
+    else
+        say(format.fmt.pix);
+}
+
+/// What is asked for and not known becomes a format that is.
+int V4l2Testbed::Parts::set_format(v4l2_format& format) {
     if (settings.refuse_format_with != 0) return settings.refuse_format_with;
-    const auto& takes = settings.takes;
-    // As v4l2loopback does, an unknown format is changed to one it knows.
-    if (std::find(takes.begin(), takes.end(), format.fmt.pix.pixelformat) == takes.end())
-        format.fmt.pix.pixelformat = takes.empty() ? 0 : takes.front();
+    const auto knows = [](const auto& formats, std::uint32_t fourcc) {
+        return std::find(formats.begin(), formats.end(), fourcc) != formats.end();
+    };
+    if (settings.output) {  // as v4l2loopback does
+        const auto& takes = settings.takes;
+        if (!knows(takes, format.fmt.pix.pixelformat))
+            format.fmt.pix.pixelformat = takes.empty() ? 0 : takes.front();
+        return 0;
+    }
+    const std::uint32_t asked =
+        settings.multi_planar ? format.fmt.pix_mp.pixelformat : format.fmt.pix.pixelformat;
+    if (knows(settings.offers, asked)) settings.fourcc = asked;
+    say_format(format);
     return 0;
 }
 

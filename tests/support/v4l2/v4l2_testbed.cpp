@@ -105,6 +105,11 @@ void V4l2Testbed::change_format(std::uint32_t fourcc, int width, int height) {
     parts_->settings.height = height;
 }
 
+std::uint32_t V4l2Testbed::fourcc() const {
+    const std::lock_guard lock{parts_->mutex};
+    return parts_->settings.fourcc;
+}
+
 void V4l2Testbed::hide_node(bool hidden) {
     const std::string there = parts_->file, away = there + ".away";
     std::filesystem::rename(hidden ? there : away, hidden ? away : there);

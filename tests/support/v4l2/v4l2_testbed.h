@@ -18,9 +18,10 @@ struct V4l2NodeSettings {
     bool output = false;  ///< takes frames instead of giving them
     bool multi_planar = false;
     std::string card = "eventide testbed";
-    std::uint32_t fourcc = 0;   ///< of a capture node
-    int width = 0, height = 0;  ///< of a capture node's format
-    bool streams = true;        ///< a capture node; else it can only be read from
+    std::uint32_t fourcc = 0;           ///< of a capture node
+    int width = 0, height = 0;          ///< of a capture node's format
+    std::vector<std::uint32_t> offers;  ///< formats a capture node can be set to
+    bool streams = true;                ///< a capture node; else it can only be read from
     std::size_t buffer_bytes = 64 * 1024;
     std::uint32_t most_buffers = 4;
     std::uint32_t data_offset = 0;            ///< of a multi-planar buffer: bytes before the data
@@ -66,6 +67,7 @@ public:
 
     /// As a driver that was loaded again, or media-ctl, leaves it.
     void change_format(std::uint32_t fourcc, int width, int height);
+    std::uint32_t fourcc() const;  ///< of a capture node now
     /// /dev/video0 is gone, or there again.
     void hide_node(bool hidden);
     /// Another device is there.

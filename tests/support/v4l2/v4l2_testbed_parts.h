@@ -58,7 +58,9 @@ struct V4l2Testbed::Parts {
             umockdev_ioctl_data_resolve(arg, 0, sizeof(T), nullptr)};
         return data ? fill(*reinterpret_cast<T*>(data->data), data.get()) : EFAULT;
     }
-    int set_format(v4l2_format& format) const;
+    std::uint32_t capture_type() const;
+    void say_format(v4l2_format& format) const;
+    int set_format(v4l2_format& format);
     /// The plane of a multi-planar buffer, in the client's memory.
     static v4l2_plane* plane_of(UMockdevIoctlData* buffer, Owned<UMockdevIoctlData>& holder);
     int dequeue(v4l2_buffer& buffer, UMockdevIoctlData* data);
