@@ -3,6 +3,7 @@
 
 #include "apps/evaluate/report.h"
 #include "replay/open_options.h"
+#include "src/core/event.h"
 #include "src/core/parallel_for.h"
 #include "src/core/sensor_time.h"
 #include "src/model/engine.h"
@@ -50,6 +51,7 @@ struct RecordingSettings {
     int skip_images = 3;
     OpenOptions input;                   ///< what the recordings do not say themselves
     std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
+    std::optional<ColourFilter> bayer;   ///< of their sensors; empty: what the recordings say
     /// Every so many images one is given to the model (ImageFusion) and not scored; 0: none.
     int given_images = 0;
 };

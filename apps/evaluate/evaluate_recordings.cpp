@@ -132,7 +132,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
         ReferenceSequence sequence =
-            read_reference_sequence(path, read_from, what.to_s, what.input);
+            read_reference_sequence(path, read_from, what.to_s, what.input, what.bayer);
         ScoredImages which;
         which.given = what.given_images;
         const int images = int(sequence.images.size());

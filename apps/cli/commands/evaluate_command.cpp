@@ -149,6 +149,7 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
     what.from_s = seconds_of(from_, "start");
     what.to_s = seconds_of(to_, "end");
     return evaluate_recordings(what, how);
+    what.bayer = bayer_;
 }
 
 void EvaluateCommand::write_plots(const std::vector<Plot>& plots) const {

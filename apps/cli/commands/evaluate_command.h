@@ -57,6 +57,7 @@ private:
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;
     std::string from_ = "start", to_ = "end";
+    std::optional<ColourFilter> bayer_;
     std::string images_;
     int last_images_ = 0, sequences_ = 20, event_windows_ = 150, seed_ = 4000;
     Size size_{240, 160};
