@@ -156,7 +156,8 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
                              " not scored" +
                              (what.given_images > 0
                                   ? ", one image of " + std::to_string(what.given_images) + " given"
-                                  : std::string{}));
+                                  : std::string{}) +
+                             ", lamp flicker " + how.lamp_flicker);
 }
 
 }  // namespace eventide
