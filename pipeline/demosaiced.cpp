@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <utility>
+
 namespace eventide {
 
 namespace {
@@ -26,21 +28,26 @@ int opencv_code(ColourFilter filter) {
 
 }  // namespace
 
-ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter) {
-    if (filter == ColourFilter::none) filter = image.filter;
+std::optional<ColourFilter> told_filter(ColourFilter filter, bool is_stated) {
+    if (filter == ColourFilter::none && !is_stated) return std::nullopt;
+    return filter;
+}
+
+ReferenceImage demosaiced(ReferenceImage image, std::optional<ColourFilter> told) {
+    const ColourFilter filter = told.value_or(image.filter);
     // Of less than two rows or columns there is nothing to interpolate.
     if (image.channels != 1 || filter == ColourFilter::none || image.pixels.height() < 2 ||
         image.pixels.width() < 2)
         return image;
-    ReferenceImage colour = image;
-    colour.channels = 3;
-    colour.filter = ColourFilter::none;
-    colour.pixels = Array2<std::uint16_t>(image.pixels.height(), 3 * image.pixels.width());
+    Array2<std::uint16_t> colours(image.pixels.height(), 3 * image.pixels.width());
     const cv::Mat mosaic(image.pixels.height(), image.pixels.width(), CV_16UC1,
-                         const_cast<std::uint16_t*>(image.pixels.values().data()));
-    cv::Mat bgr(mosaic.rows, mosaic.cols, CV_16UC3, colour.pixels.values().data());
+                         image.pixels.values().data());
+    cv::Mat bgr(mosaic.rows, mosaic.cols, CV_16UC3, colours.values().data());
     cv::cvtColor(mosaic, bgr, opencv_code(filter_at(filter, image.x0, image.y0)));
-    return colour;
+    image.pixels = std::move(colours);
+    image.channels = 3;
+    image.filter = ColourFilter::none;
+    return image;
 }
 
 }  // namespace eventide

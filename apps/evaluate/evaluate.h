@@ -3,6 +3,7 @@
 
 #include "apps/evaluate/report.h"
 #include "replay/open_options.h"
+#include "src/core/event.h"
 #include "src/core/parallel_for.h"
 #include "src/core/sensor_time.h"
 #include "src/model/engine.h"
@@ -24,7 +25,8 @@ struct EvaluateSettings {
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
     /// "model" (as the model was trained), "auto", "off" or a time; parse_noise_filter().
     std::string noise_filter = "model";
-    std::string lamp_flicker = "auto";  ///< as of a camera: parse_lamp_flicker()
+    /// Of recordings, as of a camera: parse_lamp_flicker().
+    std::string lamp_flicker = "auto";
     EngineOptions engine;
     bool fuse_images = false;  ///< images will be given to the model (evaluate_recordings sets it)
     /// Over sequences; results do not depend on it. Memory grows with those done at once.
@@ -49,6 +51,7 @@ struct RecordingSettings {
     static constexpr int kSkipHalf = -1;
     int skip_images = 3;
     OpenOptions input;                   ///< what the recordings do not say themselves
+    std::optional<ColourFilter> bayer;   ///< of their sensors; empty: what the recordings say
     std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
     /// Every so many images one is given to the model (ImageFusion) and not scored; 0: none.
     int given_images = 0;

@@ -81,7 +81,8 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
     if (how.lookahead > 0)
         evaluation.note("EVREAL's tables are without lookahead: these numbers saw " +
                         std::to_string(how.lookahead) + " event windows more");
-    return evaluation.finish("windows between reference images, no stretch");
+    return evaluation.finish("windows between reference images, no stretch, lamp flicker " +
+                             how.lamp_flicker);
 }
 
 }  // namespace eventide

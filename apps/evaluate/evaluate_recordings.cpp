@@ -132,7 +132,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
         ReferenceSequence sequence =
-            read_reference_sequence(path, read_from, what.to_s, what.input);
+            read_reference_sequence(path, read_from, what.to_s, what.input, what.bayer);
         ScoredImages which;
         which.given = what.given_images;
         const int images = int(sequence.images.size());
@@ -156,7 +156,8 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
                              " not scored" +
                              (what.given_images > 0
                                   ? ", one image of " + std::to_string(what.given_images) + " given"
-                                  : std::string{}));
+                                  : std::string{}) +
+                             ", lamp flicker " + how.lamp_flicker);
 }
 
 }  // namespace eventide

@@ -9,9 +9,8 @@
 #include <cmath>
 
 namespace eventide {
-namespace {
 
-void check(const SimulatedSettings& what) {
+void check_simulated(const SimulatedSettings& what) {
     const auto need = [](bool holds, const std::string& text) {
         if (!holds) throw Error(ErrorKind::usage, "simulated test set: expected " + text);
     };
@@ -27,8 +26,6 @@ void check(const SimulatedSettings& what) {
     for (const double phase : what.phases)
         need(phase > 0 && phase <= 1, "times within the event window, more than 0 and at most 1");
 }
-
-}  // namespace
 
 bool is_scored(const SimulatedSettings& what, int k) {
     return k >= what.skip_frames && (k - what.skip_frames + 1) % what.score_every == 0;
@@ -76,7 +73,7 @@ Query truth_query(const SimulatedStream& stream, SensorTime t, int width, int he
 }
 
 EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateSettings& how) {
-    check(what);
+    check_simulated(what);
     Evaluation evaluation{"simulated '" + what.preset + "'", how};
     const auto textures = test_textures(what);
     const int width = int(std::lround(what.width * what.scale));

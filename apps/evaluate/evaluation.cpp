@@ -47,7 +47,6 @@ EvaluateReport Evaluation::finish(const std::string& settings_text) {
         (settings_.engine.self_ensemble > 1
              ? ", self-ensemble of " + std::to_string(settings_.engine.self_ensemble)
              : "") +
-        ", lamp flicker " + settings_.lamp_flicker +
         (noise_filter_ ? ", noise filter " + noise_filter_text(*noise_filter_) : "") +
         (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");
     report_.overall = overall_scores(report_.sequences);

@@ -43,11 +43,12 @@ const std::vector<std::string>& figure_names();
 /// Throws Error(usage) for another name, with those there are.
 void require_figure(std::string_view name);
 
-/// Whether a figure only needs what any evaluation observes, and such a figure.
+/// Whether a figure only needs what any evaluation observes, and such a figure: those of its plots
+/// that have points.
 bool is_report_figure(std::string_view name);
 std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& report);
 
-/// One of the others.
+/// One of the others. Throws Error (usage) for sequences of which nothing would be scored.
 std::vector<Plot> simulated_figure(std::string_view name, const FigureSettings& what,
                                    const EvaluateSettings& how);
 

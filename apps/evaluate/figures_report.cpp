@@ -1,5 +1,6 @@
 // Figures that only need what every evaluation observes.
 #include "apps/evaluate/figures.h"
+#include "apps/evaluate/simulated_sequence.h"
 #include "src/core/error.h"
 #include "src/core/list_text.h"
 
@@ -143,6 +144,7 @@ void require_figure(std::string_view name) {
 
 std::vector<Plot> simulated_figure(std::string_view name, const FigureSettings& what,
                                    const EvaluateSettings& how) {
+    if (name != "silence") check_simulated(what.simulated);  // that has event windows of its own
     if (name == "spatial") return spatial_super_resolution(what, how);
     if (name == "temporal") return temporal_super_resolution(what, how);
     return error_against_silence(what, how);
@@ -153,10 +155,14 @@ bool is_report_figure(std::string_view name) {
 }
 
 std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& report) {
-    if (name == "events") return error_against_events(report);
-    if (name == "sigma") return error_against_sigma(report);
-    if (name == "patch-size") return {correlation_against_patch_size(report)};
-    return {reliability_diagram(report)};
+    std::vector<Plot> plots{reliability_diagram(report)};
+    if (name == "events") plots = error_against_events(report);
+    if (name == "sigma") plots = error_against_sigma(report);
+    if (name == "patch-size") plots = {correlation_against_patch_size(report)};
+    std::erase_if(plots, [](const Plot& plot) {
+        return std::ranges::all_of(plot.series, [](const Series& s) { return s.x.empty(); });
+    });
+    return plots;
 }
 
 }  // namespace eventide

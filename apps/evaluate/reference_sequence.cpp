@@ -119,8 +119,8 @@ private:
     bool begun_ = false;
 };
 
-void read_recording(const std::filesystem::path& path, const OpenOptions& input, Keeper& keeper,
-                    ReferenceSequence& into) {
+void read_recording(const std::filesystem::path& path, const OpenOptions& input,
+                    std::optional<ColourFilter> bayer, Keeper& keeper, ReferenceSequence& into) {
     const auto recording = open_recording(path.string(), input);
     const auto parser = recording->make_parser();
     into.width = recording->info().width;
@@ -137,8 +137,9 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     if (!keeper.past_end()) parser->finish(batch);
     keeper.take(batch);
     keeper.finish(into);
+    const ColourFilter filter = bayer.value_or(recording->info().colour_filter);
     for (ReferenceImage& image : into.images)
-        image = demosaiced(image, recording->info().colour_filter);
+        image = demosaiced(std::move(image), told_filter(filter, bayer.has_value()));
     into.damaged = parser->damaged();
     if (std::string text =
             left_out_text(path.string(), recording->info().format, keeper.events(), into.damaged);
@@ -157,11 +158,12 @@ std::string sequence_name(const std::filesystem::path& path) {
 
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s, std::optional<double> to_s,
-                                          const OpenOptions& input) {
+                                          const OpenOptions& input,
+                                          std::optional<ColourFilter> bayer) {
     ReferenceSequence sequence;
     sequence.name = sequence_name(path);
     Keeper keeper{from_s, to_s};
-    read_recording(path, input, keeper, sequence);
+    read_recording(path, input, bayer, keeper, sequence);
     mend_times(sequence.images);
     if (keeper.resets() > 0)
         sequence.warnings.push_back(path.string() + ": its clock began anew " +

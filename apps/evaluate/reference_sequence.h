@@ -36,12 +36,13 @@ std::string sequence_name(const std::filesystem::path& path);
 
 /// Reads a recording of any format. Where given, only data in [from, to]
 /// (s from `first`) are kept, which may be none; where the clock began anew, of the part with the
-/// most images. Image times are mended; mosaics are in colour. Throws Error(input) where the
-/// recording has no events, no images, or no sensor size.
+/// most images. Image times are mended; mosaics, by `bayer` or else by what the recording says, are
+/// in colour. Throws Error(input) where the recording has no events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {},
-                                          const OpenOptions& input = {});
+                                          const OpenOptions& input = {},
+                                          std::optional<ColourFilter> bayer = {});
 
 /// A single time that lies after the next one is taken as the middle of its neighbours, as EVREAL
 /// does (HQF has one); then images are in order of time.

@@ -14,6 +14,9 @@
 
 namespace eventide {
 
+/// Throws Error (usage) for settings that give no sequences, or none that is scored.
+void check_simulated(const SimulatedSettings& what);
+
 /// The textures the settings name. Throws Error.
 std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& what);
 

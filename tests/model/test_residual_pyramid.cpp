@@ -175,7 +175,9 @@ TEST(ResidualPyramid, WhatIsLessKnownCountsLessInTheFinestBandAlone) {
         EXPECT_NEAR(expect(pyramid, coarse).correction(16, 16), .3F, 1e-5);
     }
     pyramid.know(constant(kSize, kSize, .1F));
-    EXPECT_LT(expect(pyramid, coarse).correction(16, 16), .299F);
+    // Of five bands, down to 2 px, each leaves a share of 1 - c_k.
+    EXPECT_NEAR(expect(pyramid, coarse).correction(16, 16), .3 * (1 - .9 * std::pow(1 - 4 * .1, 4)),
+                1e-5);
 }
 
 TEST(ResidualPyramid, WhatCannotBeTrustedLeavesTheOldKnowledge) {

@@ -88,6 +88,8 @@ TEST_F(WrongUsage, IsRefused) {
     expect(2, {"evaluate", recording(), "--plots", "p/"}, "--plots p/: expected --figure NAME");
     expect(2, {"evaluate", "a", "b", "--protocol", "folders", "--figure", "events"},
            "--figure events: expected an evaluation of a model");
+    expect(2, {"evaluate", recording(), "--figure", "patch-size"},
+           "--figure patch-size: expected --lpips FILE, found none");
     expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},
            "expected one or more recordings");
     expect(2, {"run", "sim:demo?size=1x1", "--out", "null"}, "2 to 8192 px, found 1\n");

@@ -7,6 +7,7 @@
 #include "apps/cli/settings/model_path.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <spdlog/spdlog.h>
 
@@ -91,6 +92,8 @@ void EvaluateCommand::require_figures_that_fit() const {
         throw Error(ErrorKind::usage, "--figure " + figures_.front() +
                                           ": expected an evaluation of a model, found --protocol "
                                           "folders");
+    if (lpips_.empty() && std::ranges::count(figures_, "patch-size") > 0)
+        throw Error(ErrorKind::usage, "--figure patch-size: expected --lpips FILE, found none");
 }
 
 void EvaluateCommand::require_outputs_that_fit() const {
@@ -146,6 +149,7 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
             "--frames 1: all images would be given and none scored; expected 0, or 2 or more");
     what.given_images = given_images_;
     what.input = input_.options();
+    what.bayer = bayer_;
     what.from_s = seconds_of(from_, "start");
     what.to_s = seconds_of(to_, "end");
     return evaluate_recordings(what, how);
@@ -154,6 +158,17 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
 void EvaluateCommand::write_plots(const std::vector<Plot>& plots) const {
     for (const Plot& plot : plots)
         spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
+}
+
+void EvaluateCommand::write_report_figures(const EvaluateReport& report) const {
+    for (const std::string& figure : figures_) {
+        if (!is_report_figure(figure)) continue;
+        const std::vector<Plot> plots = report_figure(figure, report);
+        if (plots.empty())
+            spdlog::warn("--figure {}: not drawn, as nothing of it was measured on {}", figure,
+                         counted(std::uint64_t(report.overall.frames), "scored frame"));
+        write_plots(plots);
+    }
 }
 
 void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const {
@@ -230,8 +245,7 @@ int EvaluateCommand::run(Program& program) {
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);
     write(report, program.signals);
-    for (const std::string& figure : figures_)
-        if (is_report_figure(figure)) write_plots(report_figure(figure, report));
+    write_report_figures(report);
     if (!calibrated_.empty()) calibrate(report, settings);
     return exit_done;
 }

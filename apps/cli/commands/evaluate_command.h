@@ -42,6 +42,7 @@ private:
     void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
     void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;
+    void write_report_figures(const EvaluateReport& report) const;
     void make_simulated_figures(const EvaluateSettings& how) const;
     void write(const EvaluateReport& report, const Signals& signals) const;
     void calibrate(const EvaluateReport& report, const EvaluateSettings& how) const;
@@ -56,6 +57,7 @@ private:
     std::string lamp_flicker_ = "auto";
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;
+    std::optional<ColourFilter> bayer_;
     std::string from_ = "start", to_ = "end";
     std::string images_;
     int last_images_ = 0, sequences_ = 20, event_windows_ = 150, seed_ = 4000;

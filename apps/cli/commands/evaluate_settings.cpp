@@ -79,6 +79,7 @@ SettingTable EvaluateCommand::settings() {
         "recordings: give one image of N to the model, which corrects its frames, and "
         "score the others; 0: none.",
         0, 1000000));
+    add(bayer_setting(bayer_, "recordings: as in eventide run."));
     add(seconds_setting("from", from_,
                         "recordings: score from here, after the first event; start: "
                         "all.",
@@ -134,7 +135,7 @@ SettingTable EvaluateCommand::settings() {
 /// Which take an option; empty: all.
 std::vector<EvaluateCommand::Protocol> EvaluateCommand::protocols_of(const std::string& key) {
     using enum Protocol;
-    static const std::set<std::string> of_recordings{"window", "skip", "frames",
+    static const std::set<std::string> of_recordings{"window", "skip", "frames", "bayer",
                                                      "from",   "to",   "reorder"};
     static const std::set<std::string> of_simulated{
         "images", "last_images", "sequences", "size", "event_windows", "scale", "seed"};

@@ -7,13 +7,16 @@
 #include "pipeline/model_render_stage.h"
 #include "pipeline/stages.h"
 
+#include <optional>
+
 namespace eventide::app {
 
 /// Each is borrowed, and may be null: nobody wants it. Bin thread.
 class DataObservers final : public DataObserver {
 public:
-    /// `filter`: of mosaics that do not say their own.
-    DataObservers(ReferenceImages* shown, ImagesOnTheWay* corrections, ColourFilter filter)
+    /// `filter`: as demosaiced() takes it.
+    DataObservers(ReferenceImages* shown, ImagesOnTheWay* corrections,
+                  std::optional<ColourFilter> filter)
         : filter_{filter}, shown_{shown}, corrections_{corrections} {}
 
     void hand_all_to(EventsOut* file) { file_ = file; }
@@ -22,7 +25,7 @@ public:
     void see(const Batch& batch) override;
 
 private:
-    ColourFilter filter_;
+    std::optional<ColourFilter> filter_;
     ReferenceImages* shown_;
     ImagesOnTheWay* corrections_;
     ColourNetworks* networks_ = nullptr;

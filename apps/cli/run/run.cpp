@@ -7,6 +7,7 @@
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
+#include "pipeline/demosaiced.h"
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
@@ -106,7 +107,8 @@ Run::Run(Program& program, RunSettings& settings)
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, network_.config(), sensor_, !as_live())},
       observers_{sheet_ ? &references_ : nullptr,
-                 settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
+                 settings.frames == CameraFrames::ignore ? nullptr : &images_,
+                 told_filter(colour_filter_, settings.bayer.has_value())},
       render_{render_stage()} {
     if (opened_.recording != nullptr)
         refuse_idle_input_flags(program.flags, {opened_.recording->info().format});

@@ -68,12 +68,9 @@ void RunSettings::add_network(SettingTable& table) {
         {{CameraFrames::automatic, "auto"},
          {CameraFrames::use, "use"},
          {CameraFrames::ignore, "ignore"}}));
-    add(open_setting<ColourFilter>(
-        "bayer", bayer, "auto|none|rggb|grbg|gbrg|bggr",
-        "The sensor's colour filter, from its top left corner; auto: what the camera or recording "
-        "says. Its images are demosaiced.",
-        "auto", [](const std::string& text) { return parse_word(text, bayer_words()); },
-        [](const ColourFilter& f) { return std::string{name_of(f)}; }));
+    add(bayer_setting(bayer,
+                      "The sensor's colour filter, from its top left corner; auto: what the camera "
+                      "or recording says. Its images are demosaiced; none: they are no mosaics."));
     add(flag_setting("colour", colour,
                      "Frames in colour, of a sensor with a colour filter: folders, videos, Y4M, "
                      "window and page."));

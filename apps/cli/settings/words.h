@@ -11,6 +11,7 @@
 #include "src/settings/words.h"
 
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,14 @@ inline const std::vector<Word<ColourFilter>>& bayer_words() {
         return all;
     }();
     return words;
+}
+
+/// --bayer of a source; empty: auto, what the source says.
+inline Setting bayer_setting(std::optional<ColourFilter>& filter, std::string help) {
+    return open_setting<ColourFilter>(
+        "bayer", filter, "auto|none|rggb|grbg|gbrg|bggr", std::move(help), "auto",
+        [](const std::string& text) { return parse_word(text, bayer_words()); },
+        [](const ColourFilter& f) { return std::string{name_of(f)}; });
 }
 
 /// Throws Error (usage) naming the option whose list a configuration file or the environment left

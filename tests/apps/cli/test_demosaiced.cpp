@@ -31,6 +31,17 @@ TEST(Demosaiced, WhatHasNothingToInterpolateStaysAsItIs) {
     EXPECT_EQ(demosaiced(mosaic(4, 6), ColourFilter::none), mosaic(4, 6)) << "no filter is known";
 }
 
+TEST(Demosaiced, AnImageIsWhatItSaysUnlessSomebodyStatesSomethingElse) {
+    ReferenceImage image = mosaic(4, 6);
+    image.filter = ColourFilter::grbg;
+    EXPECT_EQ(demosaiced(image, told_filter(ColourFilter::none, false)).channels, 3);
+    EXPECT_EQ(demosaiced(image, told_filter(ColourFilter::none, true)), image) << "--bayer none";
+    image.pixels(0, 0) = 9000;
+    EXPECT_EQ(demosaiced(image, told_filter(ColourFilter::bggr, false)),
+              demosaiced(image, ColourFilter::bggr));
+    EXPECT_NE(demosaiced(image, ColourFilter::bggr), demosaiced(image, std::nullopt));
+}
+
 TEST(ColourFilterOf, ABagIsWhatItsImagesTell) {
     using namespace test;
     constexpr std::uint32_t kEvents = 3, kImages = 5;

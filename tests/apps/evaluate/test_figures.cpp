@@ -192,12 +192,25 @@ TEST(Figures, AreEachMadeByTheirName) {
             for (const Series& series : plot.series) {
                 EXPECT_FALSE(series.label.empty() && plot.series.size() > 1);
                 EXPECT_EQ(series.x.size(), series.y.size());
-                if (name != "patch-size") {
-                    EXPECT_FALSE(series.x.empty()) << plot.name;
-                }
+                EXPECT_FALSE(series.x.empty()) << plot.name;
             }
         }
     EXPECT_THROW(require_figure("nonsense"), Error);
+}
+
+TEST(Figures, OfSequencesTooShortToBeScoredAreRefused) {
+    FigureSettings what = small_figures();
+    what.simulated.event_windows = what.simulated.skip_frames + what.simulated.score_every - 1;
+    for (const char* name : {"spatial", "temporal"})
+        EXPECT_THROW(simulated_figure(name, what, small_model()), Error) << name;
+    EXPECT_NO_THROW(simulated_figure("silence", what, small_model()));
+}
+
+TEST(Figures, OfAReportThatScoredNothingHaveNoPlots) {
+    for (const std::string& name : figure_names())
+        if (is_report_figure(name)) {
+            EXPECT_TRUE(report_figure(name, {}).empty()) << name;
+        }
 }
 
 const Series& series_of(const std::vector<Plot>& plots, const std::string& plot,

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <vector>
 
 namespace eventide::test {
@@ -66,8 +67,10 @@ TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
     EXPECT_EQ(part.events[0].t, from_us(250'000));
 }
 
-TEST(ReferenceSequence, ImagesOfAColourCameraAreWhatItSawAndNoMosaic) {
-    constexpr int kRed = 200 * 257, kOthers = 20 * 257;
+constexpr int kRed = 200 * 257, kOthers = 20 * 257;
+
+/// A bag with one image of a sensor before which everything is red, which says its `encoding`.
+fs::path colour_bag(const char* encoding) {
     ReferenceImage mosaic;
     mosaic.t = from_us(500);
     mosaic.pixels = Array2<std::uint16_t>(4, 6);
@@ -77,16 +80,30 @@ TEST(ReferenceSequence, ImagesOfAColourCameraAreWhatItSawAndNoMosaic) {
                 channel_at(ColourFilter::grbg, x, y) == ColourChannel::red ? kRed : kOthers;
     const std::vector<Event> events{{from_us(1), 1, 1, Polarity::on},
                                     {from_us(900), 2, 1, Polarity::off}};
-    const fs::path path = fresh_folder("colour_bag") / "colour.bag";
-    std::ofstream{path, std::ios::binary} << bag(
-        chunk("none", connection(3, "dvs_msgs/EventArray") + connection(5, "sensor_msgs/Image") +
-                          message(3, event_array(6, 4, events)) +
-                          message(5, image(mosaic, "bayer_grbg8"))));
-    const ReferenceSequence sequence = read_reference_sequence(path);
-    ASSERT_EQ(sequence.images.size(), 1U);
-    const Array2<float> seen = intensity_of(sequence.images[0]);
-    for (const float v : seen.values())
-        EXPECT_NEAR(v, (.299 * kRed + .701 * kOthers) / 65535, 1e-3);
+    fs::path path = fresh_folder("colour_bag") / "colour.bag";
+    std::ofstream{path, std::ios::binary} << bag(chunk(
+        "none", connection(3, "dvs_msgs/EventArray") + connection(5, "sensor_msgs/Image") +
+                    message(3, event_array(6, 4, events)) + message(5, image(mosaic, encoding))));
+    return path;
+}
+
+Array2<float> grey_of_first_image(const fs::path& path, std::optional<ColourFilter> bayer = {}) {
+    return intensity_of(read_reference_sequence(path, {}, {}, {}, bayer).images.at(0));
+}
+
+TEST(ReferenceSequence, ImagesOfAColourCameraAreWhatItSawAndNoMosaic) {
+    for (const Array2<float>& seen :
+         {grey_of_first_image(colour_bag("bayer_grbg8")),
+          grey_of_first_image(colour_bag("mono8"), ColourFilter::grbg),
+          grey_of_first_image(colour_bag("bayer_bggr8"), ColourFilter::grbg)})
+        for (const float v : seen.values())
+            EXPECT_NEAR(v, (.299 * kRed + .701 * kOthers) / 65535, 1e-3);
+}
+
+TEST(ReferenceSequence, ImagesThatAreSaidToBeNoMosaicStayAsTheyAre) {
+    const Array2<float> seen = grey_of_first_image(colour_bag("bayer_grbg8"), ColourFilter::none);
+    EXPECT_NEAR(seen(0, 0), kOthers / 65535., 1e-5);
+    EXPECT_NEAR(seen(0, 1), kRed / 65535., 1e-5);
 }
 
 /// Bytes of a recording from 0 on, an event each millisecond and an image each 100 ms.

@@ -93,6 +93,18 @@ TEST(EvaluateSimulated, ComparesAtAnyLookaheadScaleAndTime) {
     EXPECT_THROW(evaluate_simulated(small_simulation(), how), Error);
 }
 
+TEST(EvaluateSimulated, SaysNothingOfLampsWhichAreLookedForInRecordingsAlone) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("lamps"), .6, .002, .1)};
+    EvaluateSettings how = small_model();
+    how.lamp_flicker = "5ms";
+    const auto names_it = [](const EvaluateReport& report) {
+        return report.settings.find("lamp flicker 5ms") != std::string::npos;
+    };
+    EXPECT_TRUE(names_it(evaluate_recordings(what, how)));
+    EXPECT_FALSE(names_it(evaluate_simulated(small_simulation(), how)));
+}
+
 TEST(EvaluateSimulated, TooFewEventWindowsToScoreOneAreRefused) {
     SimulatedSettings what = small_simulation();
     what.event_windows = what.skip_frames + what.score_every - 1;
