@@ -159,7 +159,7 @@ void add_pipeline(py::module_& module) {
              py::arg("sequential") = false)
         .def("run", &PipelineOfPython::run,
              "Until the source has ended, a sink returns False, or stop(); once. What a source or "
-             "sink raises comes out of it.")
+             "sink raises comes out of it. A source that waits longer than that is left behind.")
         .def("stop", &PipelineOfPython::stop, "From any thread: what was read is still finished.")
         .def_property_readonly("counters", &PipelineOfPython::counters, "so far");
 }
