@@ -142,15 +142,18 @@ private:
 void add_pipeline(py::module_& module) {
     py::class_<PipelineOfPython>(
         module, "Pipeline",
-        "Reading, cutting, encoding and rendering on a thread each.\n\n"
-        "source: a Reader, a Camera, or anything that gives structured arrays of events when it "
-        "is\n"
-        "iterated; width and height where it does not have them. It may have what a Camera has:\n"
-        "clock (us, or None), gap_before (then it is live, and what is late is left out), stop().\n"
-        "Nobody else may read a Reader or Camera until run() is over. sinks: a callable, or a list "
-        "of\n"
-        "them, each called with every Frame on the thread of run(); False ends the run.\n"
+        "Reading, cutting, encoding and rendering on a thread each.\n"
+        "\n"
+        "source: a Reader, a Camera, or anything that gives structured arrays of events\n"
+        "when it is iterated. It may have what a Camera has: clock (us, or None),\n"
+        "gap_before (then it is live, and what is late is left out), stop(). Nobody else\n"
+        "may read a Reader or Camera until run() is over.\n"
+        "width, height: of a source that does not have them.\n"
+        "sinks: a callable, or a list of them, each called with every Frame on the thread\n"
+        "of run(); False ends the run.\n"
         "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
+        "sequential: everything on the thread of run().\n"
+        "\n"
         "Other options are those of Reconstructor.")
         .def(py::init<const py::object&, const py::object&, const std::filesystem::path&, int, int,
                       double, bool, const py::kwargs&>(),
@@ -159,7 +162,7 @@ void add_pipeline(py::module_& module) {
              py::arg("sequential") = false)
         .def("run", &PipelineOfPython::run,
              "Until the source has ended, a sink returns False, or stop(); once. What a source or "
-             "sink raises comes out of it.")
+             "sink raises comes out of it. A source that waits longer than that is left behind.")
         .def("stop", &PipelineOfPython::stop, "From any thread: what was read is still finished.")
         .def_property_readonly("counters", &PipelineOfPython::counters, "so far");
 }

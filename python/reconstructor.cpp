@@ -249,17 +249,22 @@ void add_reconstructor(py::module_& module) {
         module, "Reconstructor",
         "Events in, frames with uncertainty out.\n"
         "\n"
-        "model is a name (default, small, thesis) or a file, width and height the sensor's.\n"
-        "window: how events are cut (model, auto, 50ms, 20000ev, 0.35epp); lookahead: windows a\n"
-        "frame waits for, 0 to 2; fps: rate of frames() and next(), a number or a text such as\n"
-        "'30000/1001' or 'frame'; size: (width, height) of the frames; roi: (x, y, width, "
-        "height) of the part\n"
-        "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
-        "(\"10ms\"); precision: auto, f32, bf16; kernels: auto, own,\n"
-        "onednn; threads: 0 for all; images: frames are corrected by the camera's images that are\n"
-        "pushed; lamp_flicker: auto, off or a time; self_ensemble: 1, 2 or 4 networks of\n"
-        "mirrored views, whose frames' mean is given. For recordings window='auto', lookahead=2,\n"
-        "lamp_flicker='16ms' are better.");
+        "model: a name (default, small, thesis) or a file. width, height: the sensor's.\n"
+        "window: how events are cut: model, auto, 50ms, 20000ev, 0.35epp.\n"
+        "lookahead: windows a frame waits for, 0 to 2.\n"
+        "fps: rate of frames() and next(), a number or a text: '30000/1001', 'frame'.\n"
+        "size: (width, height) of the frames. roi: (x, y, width, height) of the part wanted.\n"
+        "sigma: whether frames have one.\n"
+        "hot_pixels: off, learn or a file.\n"
+        "noise_filter: model, auto, off or a time: '10ms'.\n"
+        "lamp_flicker: auto, off or a time.\n"
+        "images: whether the camera's images that are pushed correct frames.\n"
+        "self_ensemble: 1, 2 or 4 networks of mirrored views, whose frames' mean is given.\n"
+        "precision: auto, f32, bf16. kernels: auto, own, onednn. threads: 0 for all.\n"
+        "reset_on_gap: forget the scene where data were lost.\n"
+        "allow_silence: any number of frames in a row without events.\n"
+        "\n"
+        "For recordings window='auto', lookahead=2, lamp_flicker='16ms' are better.");
     it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
            py::arg("size") = py::none(), py::arg("roi") = py::none(), py::arg("sigma") = true,

@@ -1,7 +1,8 @@
 // Sources of the library and of Python for a Pipeline.
 #include "python/run_source.h"
 
-#include "python/arrays.h"
+#include "python/aside.h"
+#include "python/iteration.h"
 #include "python/lock.h"
 #include "python/parts.h"
 #include "python/signals.h"
@@ -9,30 +10,19 @@
 
 #include <eventide/error.h>
 
-#include <pybind11/stl.h>
-
 #include <atomic>
+#include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace eventide::python {
 
 namespace py = pybind11;
 
 namespace {
-
-/// None where there is none. Asked for once, as a property may give what is new only once; what it
-/// raises comes out.
-py::object attribute_of(const py::object& source, const char* name) {
-    if (PyObject* found = PyObject_GetAttrString(source.ptr(), name))
-        return py::reinterpret_steal<py::object>(found);
-    if (PyErr_ExceptionMatches(PyExc_AttributeError) == 0) throw py::error_already_set();
-    PyErr_Clear();
-    return py::none();
-}
 
 int size_of(const py::object& source, const char* name, int given) {
     if (given != 0) return given;
@@ -90,18 +80,20 @@ private:
     const bool hears_signals_;
 };
 
-/// Reads on a thread that is none of Python's: everything here takes Python's lock.
+/// Asks the iterator on a thread of its own, where `aside`: one that waits for ever is left behind
+/// then. Without, run() reads on Python's main thread, and a signal ends that wait.
 class IteratedSource final : public RunSource {
 public:
-    IteratedSource(py::object source, int width, int height)
-        : source_(std::move(source)),
-          events_(py::iter(source_)),
-          live_(!attribute_of(source_, "gap_before").is_none()),
+    IteratedSource(const py::object& source, int width, int height, bool aside)
+        : iteration_(std::make_shared<Iteration>(source)),
+          live_(iteration_->is_live()),
           info_{.name = "python",
                 .serial = "",
                 .format = "",
-                .width = size_of(source_, "width", width),
-                .height = size_of(source_, "height", height)} {}
+                .width = size_of(source, "width", width),
+                .height = size_of(source, "height", height)} {
+        if (aside) aside_.emplace();
+    }
 
     const SensorInfo& info() const noexcept override { return info_; }
     bool is_live() const noexcept override { return live_; }
@@ -116,62 +108,44 @@ public:
     /// Lets go of what may know the pipeline: Python does not see such a circle.
     // NOLINTNEXTLINE(bugprone-exception-escape): as in stop().
     void end() noexcept override {
-        with_lock([this] { events_ = source_ = {}; });
+        with_lock([this] { iteration_.reset(); });
     }
 
     bool read(Batch& batch) override {
         batch.clear();
         gap_before_ = false;
-        return with_lock([&] { return read_on(batch); });
+        const auto answer = std::make_shared<Answer>();
+        const auto ask = [iteration = iteration_, answer] { *answer = iteration->next(); };
+        if (!aside_)
+            ask();
+        else if (!aside_->run(ask)) {
+            iteration_->give_up();
+            return false;
+        }
+        if (answer->error) std::rethrow_exception(answer->error);
+        if (answer->clock) clock_ = answer->clock;
+        gap_before_ = answer->gap_before;
+        std::swap(batch, answer->batch);
+        return answer->more;
     }
 
     /// Without Python's lock, which may fail, nothing could be told anyone.
     // NOLINTNEXTLINE(bugprone-exception-escape)
     void stop() noexcept override {
-        with_lock([this] { ask_to_stop(); });
+        with_lock([this] {
+            if (const auto iteration = iteration_) iteration->stop();
+        });
+        if (aside_) aside_->hurry();
     }
 
 private:
-    /// With Python's lock, as all below.
-    bool read_on(Batch& batch) {
-        const auto events = py::reinterpret_steal<py::object>(
-            or_stay([&] { return PyIter_Next(events_.ptr()); }));  // null at the end
-        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-        if (const py::object clock = attribute_of(source_, "clock"); !clock.is_none())
-            clock_ = from_us(cast_to<std::int64_t>("clock", clock));
-        if (!events) return false;
-        append_events(cast_to<py::array>("events", events), batch.events);
-        if (const py::object images = attribute_of(source_, "images"); !images.is_none())
-            append_images(images, batch.images);
-        gap_before_ = live_ && cast_to<bool>("gap_before", source_.attr("gap_before"));
-        return true;
-    }
-
-    void ask_to_stop() {
-        try {
-            if (!source_) return;
-            if (const py::object stop = attribute_of(source_, "stop"); !stop.is_none()) stop();
-        } catch (py::error_already_set& error) {
-            error.discard_as_unraisable("stop()");
-        }
-    }
-
-    /// As Reader.images gives them.
-    static void append_images(const py::object& images, std::vector<ReferenceImage>& into) {
-        using TimeAndPixels = std::pair<std::int64_t, py::array>;
-        for (const auto& [t, pixels] : cast_to<std::vector<TimeAndPixels>>("images", images)) {
-            ReferenceImage& image = into.emplace_back(image_of(pixels));
-            image.t = image.exposure_begin = image.exposure_end = from_us(t);
-        }
-    }
-
-    py::object source_;
-    py::object events_;
+    std::shared_ptr<Iteration> iteration_;  // by Python's lock, until end()
     const bool live_;
     const SensorInfo info_;
     bool gap_before_ = false;
     std::optional<SensorTime> clock_;
     std::atomic<bool> begun_{false};
+    std::optional<Aside> aside_;
 };
 
 /// Of a class derived from T in Python the iterator may be another, and is what is meant.
@@ -188,7 +162,7 @@ std::unique_ptr<RunSource> run_source(const py::object& source, int width, int h
         return std::make_unique<LibrarySource<EventReader>>(source, width, height, sequential);
     if (is_itself<EventCamera>(source))
         return std::make_unique<LibrarySource<EventCamera>>(source, width, height, sequential);
-    return std::make_unique<IteratedSource>(source, width, height);
+    return std::make_unique<IteratedSource>(source, width, height, !sequential);
 }
 
 }  // namespace eventide::python

@@ -16,22 +16,34 @@ camera passed over for the next one or a size that had to be guessed, is logged 
 logger "eventide".
 """
 
-from ._eventide import (
-    Camera,
-    DeviceError,
-    Error,
-    Frame,
-    InputError,
-    PerceptualDistance,
-    Pipeline,
-    Reader,
-    Reconstructor,
-    Simulation,
-    UsageError,
-    Writer,
-    __version__,
-    evaluate,
-)
+try:
+    from ._eventide import (
+        Camera,
+        DeviceError,
+        Error,
+        Frame,
+        InputError,
+        PerceptualDistance,
+        Pipeline,
+        Reader,
+        Reconstructor,
+        Simulation,
+        UsageError,
+        Writer,
+        __version__,
+        evaluate,
+    )
+except ModuleNotFoundError as error:
+    if error.name != "eventide._eventide":
+        raise
+    import pathlib
+    import sys
+
+    built = sorted(file.name for file in pathlib.Path(__file__).parent.glob("_eventide.*"))
+    raise ImportError(
+        f"eventide: expected the Python that {' or '.join(built) or 'a compiled part'} was built for, "
+        f"found {sys.version.split()[0]} ({sys.executable})"
+    ) from None
 
 __all__ = [
     "Camera",

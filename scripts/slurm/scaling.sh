@@ -10,6 +10,7 @@ out=$1
 shift
 nodes=("$@")
 [ $# -gt 0 ] || nodes=(1 2 4 8 16 32)
+for count in "${nodes[@]}"; do expect_number scaling.sh NODES "$count"; done
 
 # COMMAND...: its processor time, s.
 processor_s() {

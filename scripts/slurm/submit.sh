@@ -13,7 +13,11 @@ while [[ ${1:-} == --* && $1 != -- ]]; do
     --segment) segment=$(whole_number --segment "${2:-}"); shift ;;
     --warmup) warmup=${2:-}; [[ $warmup == all ]] || warmup=$(whole_number --warmup "$warmup"); shift ;;
     --states) states=true ;;
-    --sbatch) sbatch_options=${2:-}; shift ;;
+    --sbatch)
+      [ $# -ge 2 ] || refuse "submit.sh: --sbatch: expected options of sbatch, found none"
+      sbatch_options=$2
+      shift
+      ;;
     *) refuse "submit.sh: unknown option $1" ;;
   esac
   shift

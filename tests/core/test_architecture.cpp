@@ -95,7 +95,7 @@ struct Rule {
 };
 
 const std::vector<Rule> kRules{
-    {"thread", {"apps/", "pipeline/", "drivers/", "python/interruptible_run.h"}},
+    {"thread", {"apps/", "pipeline/", "drivers/", "python/aside.h", "python/interruptible_run.h"}},
     {"opencv2/",
      {"pipeline/demosaiced.cpp", "pipeline/sinks/", "apps/", "replay/image_file",
       "src/io/image_codecs", "examples/"}},

@@ -12,6 +12,7 @@ WORK = {
     "a slow sink": "run(camera, note_slowly)",
     "a slow sink without threads": "run(camera, note_slowly, sequential=True)",
     "a slow source": "run(map(note_slowly, camera), [])",
+    "a source that waits for ever": "run(iter(waits, None), [])",
 }
 PROGRAM = """
 import threading
@@ -28,6 +29,11 @@ def note(seen):
 def note_slowly(seen):
     begun.set()
     return seen if sum(range(100_000)) > 0 else None
+
+
+def waits():
+    begun.set()
+    threading.Event().wait()
 
 
 def consume(iterable):
@@ -51,6 +57,26 @@ class Exit(unittest.TestCase):
                 command = [sys.executable, "-c", PROGRAM.replace("{}", work)]
                 ended = subprocess.run(command, capture_output=True, text=True)
                 self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_is_not_disturbed_by_a_source_that_was_left_behind(self):
+        left = """
+import _thread
+import threading
+import eventide
+
+
+def waits():
+    _thread.interrupt_main()
+    threading.Event().wait()
+
+
+try:
+    eventide.Pipeline(iter(waits, None), [], "small", width=64, height=48).run()
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+        ended = subprocess.run([sys.executable, "-c", left], capture_output=True, text=True)
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted\n", ""))
 
 
 if __name__ == "__main__":

@@ -200,6 +200,33 @@ class Interrupts(RecordedTest):
             pipeline = eventide.Pipeline(source, [], "small", width=64, height=48)
             self.interrupt(pipeline.run, lambda: pipeline.counters["batches"] > 3)
 
+    def test_a_pipeline_ends_whose_source_waits_for_what_never_comes(self):
+        waits, comes = threading.Event(), threading.Event()
+        self.addCleanup(comes.set)
+
+        def nothing():
+            waits.set()
+            comes.wait()
+            yield np.zeros(0, DTYPE)
+
+        pipeline = eventide.Pipeline(nothing(), [], "small", width=64, height=48)
+        self.interrupt(pipeline.run, waits.is_set)
+
+    def test_a_source_that_asks_again_and_again_is_ended_with_its_pipeline(self):
+        asks, ended = threading.Event(), threading.Event()
+
+        def nothing():
+            try:
+                while True:
+                    asks.set()
+                yield np.zeros(0, DTYPE)
+            finally:
+                ended.set()
+
+        pipeline = eventide.Pipeline(nothing(), [], "small", width=64, height=48)
+        self.interrupt(pipeline.run, asks.is_set)
+        self.assertTrue(ended.wait(100))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -258,6 +258,19 @@ class Pipelines(RecordedTest):
         eventide.Pipeline(camera, [three, lambda frame: None], "small", window="10ms").run()
         self.assertEqual(len(seen), 3)
 
+    def test_a_sink_that_wants_no_more_ends_a_source_that_waits(self):
+        comes = threading.Event()
+        self.addCleanup(comes.set)
+
+        def some():
+            yield self.events()
+            comes.wait()
+
+        frames = []
+        pipeline = eventide.Pipeline(some(), lambda frame: frames.append(frame) or False, "small", width=64, height=48)
+        pipeline.run()
+        self.assertEqual(len(frames), 1)
+
     def test_what_a_source_or_sink_raises_comes_out(self):
         def broken():
             yield self.events()[:1000]

@@ -121,8 +121,9 @@ class Frames(RecordedTest):
         with self.assertRaisesRegex(eventide.UsageError, "not pushed yet"):
             reconstructor.render(first + 10_000_000)
         reconstructor.finish()
-        with self.assertRaisesRegex(eventide.UsageError, r"reset\(\)"):
-            reconstructor.push(events)
+        for late in (events, events[:0]):
+            with self.assertRaisesRegex(eventide.UsageError, r"reset\(\)"):
+                reconstructor.push(late)
         reconstructor.reset()
         reconstructor.push(events)
 
@@ -134,6 +135,7 @@ class Frames(RecordedTest):
         reconstructor.save_state(file)
         with self.assertRaises(eventide.UsageError):
             reconstructor.save_state(file)
+        reconstructor.save_state(file, overwrite=True)
         reconstructor.restore_state(file)
         with self.assertRaisesRegex(eventide.InputError, "none"):
             reconstructor.restore_state(self.folder / "none")

@@ -103,6 +103,8 @@ class Evaluation(RecordedTest):
                 eventide.evaluate(other, plane)
             with self.assertRaisesRegex(eventide.UsageError, "truth: expected floats, 0 black to 1 white, found"):
                 eventide.evaluate(plane, other)
+        with self.assertRaisesRegex(eventide.UsageError, "truth: expected an array without a mask"):
+            eventide.evaluate(plane, np.ma.masked_greater(plane, 0.4))
         for kind in (bool, np.float16, ">f8", np.longdouble):
             self.assertEqual(eventide.evaluate(plane.astype(kind), plane.astype(kind))["mse"], 0)
         for number in (np.nan, np.inf, -np.inf):

@@ -222,6 +222,10 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
         EXPECT_EQ(nothing.exit_code, 2);
         EXPECT_EQ(nothing.error, std::string{name} + ": expected OUT, the folder of a plan\n");
     }
+    EXPECT_THAT(script("submit.sh", {"--sbatch"}).error,
+                HasSubstr("--sbatch: expected options of sbatch, found none"));
+    EXPECT_THAT(script("scaling.sh", {"out", "1", "0"}).error,
+                HasSubstr("NODES: expected a whole number above 0, found '0'"));
     EXPECT_THAT(script("merge.sh", {"."}).error, HasSubstr("expected plan.tsv"));
     fs::remove(temp_ / "a.aedat4");
     const Result failed = script("scaling.sh", {"out"});
