@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <sstream>
 #include <utility>
@@ -181,6 +182,31 @@ std::string help_hint(const std::string& command) {
     return "; see eventide " + (command.empty() ? "" : command + " ") + "--help";
 }
 
+namespace {
+
+/// False where --help or --version was asked for and answered; `describe_all` fills in what --help
+/// shows.
+bool parse(CLI::App& app, const std::vector<std::string>& arguments,
+           const std::function<void()>& describe_all) {
+    try {
+        // CLI11 takes them from the back.
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+        return true;
+    } catch (const CLI::Success& success) {
+        if (command_of(app).empty() && !arguments.front().starts_with("-"))
+            refuse_extras(arguments, app, {});
+        describe_all();
+        app.exit(success, std::cout, std::cerr);
+        return false;
+    } catch (const CLI::ExtrasError&) {
+        refuse_extras(arguments, app, command_of(app));
+    } catch (const CLI::ParseError& error) {
+        throw Error(ErrorKind::usage, in_our_words(error.what()) + help_hint(command_of(app)));
+    }
+}
+
+}  // namespace
+
 Parsed parse_command_line(const std::vector<std::string>& given, const SettingTable& common) {
     const std::vector<std::string> arguments = with_help_as_flag(given);
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
@@ -205,21 +231,9 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     std::vector<Offered> commands;
     for (auto& command : all_commands())
         commands.push_back(offer(app, std::move(command), arguments));
+    const auto describe_all = [&] { describe(app, commands, common_options, common); };
     refuse_forgotten_values(arguments, app);
-    try {
-        // CLI11 takes them from the back.
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::Success& success) {  // --help, --version
-        if (command_of(app).empty() && !arguments.front().starts_with("-"))
-            refuse_extras(arguments, app, {});
-        describe(app, commands, common_options, common);
-        app.exit(success, std::cout, std::cerr);
-        return {};
-    } catch (const CLI::ExtrasError&) {
-        refuse_extras(arguments, app, command_of(app));
-    } catch (const CLI::ParseError& error) {
-        throw Error(ErrorKind::usage, in_our_words(error.what()) + help_hint(command_of(app)));
-    }
+    if (!parse(app, arguments, describe_all)) return {};
     if (config->count() > 0 && invocation.config_file.empty())
         throw Error(ErrorKind::usage, "--config: expected FILE, found ''" + help_hint({}));
     if (print_defaults) {
@@ -233,7 +247,7 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
         }
     invocation.common_flags = common_options.given();
     if (!invocation.command && !invocation.print_config) {
-        describe(app, commands, common_options, common);
+        describe_all();
         std::cerr << app.help();
         return {{}, int(ErrorKind::usage)};
     }
