@@ -55,8 +55,8 @@ StreamHeader header_behind(const FilterChain& filters, StreamHeader header) {
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
-    if (report.reader_gone)
-        spdlog::info("{}: its reader did not take all of it", file);
+    if (report.reader != PipeReader::takes)
+        spdlog::info("{}: {}", file, text_of(report.reader));
     else
         spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
                      counted(report.bytes_written, "byte"));
@@ -171,7 +171,7 @@ int ConvertCommand::run(Program& program) {
         return !program.signals.stopping();
     });
     progress.clear();
-    if (program.signals.stopping())
+    if (program.signals.stopping() && report.reader == PipeReader::takes)
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());

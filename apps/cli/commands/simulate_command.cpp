@@ -253,14 +253,18 @@ int SimulateCommand::run(Program& program) {
         if (!batch.events.empty())
             progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
         if (keeps_earlier && program.signals.stopping()) throw kept_earlier_file(out_);
-        return !program.signals.stopping();
+        const bool is_wanted = out.reader() == PipeReader::takes || truth;
+        return is_wanted && !program.signals.stopping();
     });
     progress.clear();
     out.finish();
     if (truth) truth->close();
-    if (program.signals.stopping())
+    const bool is_read = out.reader() == PipeReader::takes;
+    if (is_read && program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
-    spdlog::info("{}: {}, {}", out_, counted(events, "event"), counted(images, "image"));
+    spdlog::info("{}: {}", out_,
+                 is_read ? counted(events, "event") + ", " + counted(images, "image")
+                         : text_of(out.reader()));
     if (truth) spdlog::info("{}: {}", truth_, counted(truths, "frame"));
     return exit_done;
 }
