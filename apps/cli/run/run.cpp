@@ -183,7 +183,6 @@ void Run::open_outputs() {
         filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
-        create_folder(settings_.states_out);
         states_folder_.take(settings_.states_out);
         if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
     }
