@@ -23,8 +23,7 @@ public:
     /// what was written.
     virtual void close() {}
 
-    /// False when nobody wants more frames (a reader of a pipe went away, a window was closed): the
-    /// run ends cleanly.
+    /// False when nobody wants more frames (a window was closed): the run ends cleanly.
     virtual bool wants_more() const { return true; }
 
     /// Render thread. Of the last write(): how long somebody wished to look at that frame (a

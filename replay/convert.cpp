@@ -84,7 +84,7 @@ public:
     const FormatHolds& holds() const override { return format_.holds; }
     void write(const Batch& batch) override { file_.write(batch); }
     void finish() override { file_.finish(); }
-    bool reader_gone() const override { return file_.reader_gone(); }
+    PipeReader reader() const override { return file_.reader(); }
     std::uint64_t bytes_written() const override { return file_.bytes_written(); }
 
 private:
@@ -134,7 +134,8 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     while (!enough && recording.read(packet) == ReadStatus::data) {
         parser->parse(packet.bytes, batch);
         pass_on();
-        enough = part.is_over() || target.reader_gone() || (progress && !progress());
+        enough =
+            part.is_over() || target.reader() != PipeReader::takes || (progress && !progress());
     }
     // Where nobody wanted more, half a record in hand is no damage of the recording's.
     if (!enough) parser->finish(batch);
@@ -143,7 +144,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     report.damaged = parser->damaged();
     report.bytes_written = target.bytes_written();
     report.lost = target.lost();
-    report.reader_gone = target.reader_gone();
+    report.reader = target.reader();
     return report;
 }
 

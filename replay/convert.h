@@ -4,6 +4,7 @@
 #include "replay/formats.h"
 #include "replay/recording.h"
 #include "replay/written_data.h"
+#include "src/io/output_file.h"
 
 #include <cstdint>
 #include <functional>
@@ -27,8 +28,8 @@ struct ConvertReport {
     WrittenData data{FormatHolds{}};  ///< what the target could not hold as it was
     Damage damaged;                   ///< found in what was read
     std::uint64_t bytes_written = 0;
-    std::uint64_t lost = 0;    ///< ConvertTarget::lost()
-    bool reader_gone = false;  ///< ConvertTarget::reader_gone()
+    std::uint64_t lost = 0;  ///< ConvertTarget::lost()
+    PipeReader reader = PipeReader::takes;
 };
 
 /// Where converted data go.
@@ -39,8 +40,9 @@ public:
     /// Throws Error: usage for what cannot be held (a coordinate too large), failed when it cannot
     /// be written.
     virtual void write(const Batch& batch) = 0;
-    virtual void finish() = 0;                          ///< once, after the last write
-    virtual bool reader_gone() const { return false; }  ///< nobody wants more
+    virtual void finish() = 0;  ///< once, after the last write
+    /// As OutputFile::reader(): without one nothing more is wanted.
+    virtual PipeReader reader() const { return PipeReader::takes; }
     virtual std::uint64_t bytes_written() const = 0;
     virtual std::uint64_t lost() const { return 0; }  ///< datagrams that nobody received
 };

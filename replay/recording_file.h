@@ -33,8 +33,8 @@ public:
 
     std::uint64_t bytes_written() const { return bytes_written_; }
 
-    /// Whoever read the pipe went away: no error, but nothing is written any more.
-    bool reader_gone() const { return file_->reader_gone(); }
+    /// As OutputFile::reader().
+    PipeReader reader() const { return file_->reader(); }
 
 private:
     void flush();

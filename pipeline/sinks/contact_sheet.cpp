@@ -3,7 +3,6 @@
 
 #include "src/core/error.h"
 #include "src/io/image_codecs.h"
-#include "src/io/output_file.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -143,7 +142,9 @@ void ContactSheetSink::close() {
     if (!encode_image(settings_.path.extension().string(), lay_out(rows), bytes))
         throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be encoded");
     OutputFile file{settings_.path,
-                    {.overwrite = settings_.overwrite, .give_up = settings_.give_up}};
+                    {.overwrite = settings_.overwrite,
+                     .give_up = settings_.give_up,
+                     .unread = settings_.unread}};
     file.write(std::as_bytes(std::span{bytes}));
     file.close();
 }

@@ -4,6 +4,7 @@
 #include "pipeline/sink.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "src/core/sensor_time.h"
+#include "src/io/output_file.h"
 
 #include <filesystem>
 #include <functional>
@@ -25,6 +26,7 @@ struct ContactSheetSettings {
     ShownPart part = {};                  ///< that frames show
     /// Asked while a pipe waits for its reader: true gives up. May be empty.
     std::function<bool()> give_up = {};
+    std::function<void(const std::string&, PipeReader)> unread = {};  ///< as OutputOptions has it
 };
 
 /// An exposure and a read-out, and an image more, which may be the nearer one.

@@ -101,12 +101,13 @@ StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)}
     settings_.stamp = settings_.stamp && !is_y4m(settings_.format);  // its frames have headers
     file_.emplace(settings_.path, OutputOptions{.overwrite = settings_.overwrite,
                                                 .appears = Appears::growing,
-                                                .give_up = settings_.give_up});
+                                                .give_up = settings_.give_up,
+                                                .unread = settings_.unread});
 }
 
 void StreamSink::write(const Frame& frame) {
     if (begun_ && repeats()) repeat_before(frame.index);
-    if (!is_read()) return note_reader();
+    if (!is_watched()) return;
     index_ = frame.index;
     bytes_.clear();
     if (is_y4m(settings_.format))
@@ -116,11 +117,6 @@ void StreamSink::write(const Frame& frame) {
     if (!begun_ && settings_.live) file_->hold_at_most(bytes_.size());
     file_->write(bytes_);
     begun_ = true;
-    if (!is_read()) note_reader();
-}
-
-void StreamSink::note_reader() {
-    if (auto reader_left = std::exchange(settings_.reader_left, {})) goes_on_ = reader_left();
 }
 
 bool StreamSink::repeats() const {
@@ -132,7 +128,7 @@ bool StreamSink::repeats() const {
 /// every frame that is repeated for it, so it gets them when it has caught up.
 void StreamSink::repeat_before(std::uint64_t index) {
     owed_ += index > index_ ? index - index_ - 1 : 0;
-    for (; owed_ > 0 && is_read() && file_->takes_at_once(); --owed_) {
+    for (; owed_ > 0 && is_watched() && file_->takes_at_once(); --owed_) {
         stamp_.index = std::uint32_t(index - owed_);
         stamp_.flags = FrameStamp::kRepeat;
         if (settings_.stamp) stamp_.write_to(bytes_);
@@ -188,7 +184,7 @@ void StreamSink::append_raw(const Frame& frame) {
 void StreamSink::close() {
     // A reader that went away was told of; it was not too slow.
     if (const std::uint64_t owed = std::exchange(owed_, 0);
-        owed > 0 && is_read() && settings_.shorter_by)
+        owed > 0 && is_watched() && settings_.shorter_by)
         settings_.shorter_by(owed);
     if (file_) file_->close();
     file_.reset();

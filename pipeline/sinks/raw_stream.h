@@ -72,17 +72,14 @@ struct StreamSettings {
     bool live = false;
     /// Asked while a named pipe waits for its reader: true gives up. May be empty.
     std::function<bool()> give_up = {};
-    /// Told once that the reader went away. Whether the run goes on for others. May be empty: it
-    /// ends.
-    std::function<bool()> reader_left = {};
+    std::function<void(const std::string&, PipeReader)> unread = {};  ///< as OutputOptions has it
     /// Told at close() by how many frames the stream is shorter than the time it shows, where its
     /// reader was slower. May be empty.
     std::function<void(std::uint64_t)> shorter_by = {};
 };
 
 /// SIGPIPE must be ignored by the program. When the reader goes away, what is written goes nowhere,
-/// which is no error, and wants_more() is false from then on, if StreamSettings::reader_left does
-/// not say otherwise.
+/// which is no error.
 class StreamSink : public Sink {
 public:
     /// Opens the target; a named pipe waits for its reader. Throws Error (usage) for a combination
@@ -92,12 +89,9 @@ public:
 
     void write(const Frame& frame) override;
     void close() override;
-    bool wants_more() const override { return is_read() || goes_on_; }
-    bool is_watched() const override { return is_read(); }
+    bool is_watched() const override { return file_ && file_->is_read(); }
 
 private:
-    bool is_read() const { return file_ && !file_->reader_gone(); }
-    void note_reader();
     bool repeats() const;
     void repeat_before(std::uint64_t index);
     void append_y4m(const Frame& frame);
@@ -106,7 +100,6 @@ private:
     StreamSettings settings_;
     std::optional<OutputFile> file_;  // until close()
     bool begun_ = false;
-    bool goes_on_ = false;  // the reader went away, and others did not
     cv::Mat image_;
     std::vector<std::byte> bytes_;  // of one frame: one write, so that readers see whole frames
     FrameStamp stamp_;              // of that frame

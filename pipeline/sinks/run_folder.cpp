@@ -152,11 +152,6 @@ RunFolder::RunFolder(fs::path folder, bool overwrite, RunFolderFiles files)
                                            std::generic_category().message(errno));
 }
 
-RunFolder::~RunFolder() {
-    std::error_code holds_something;
-    if (made_) fs::remove(folder_, holds_something);
-}
-
 void RunFolder::begin() {
     if (std::exchange(begun_, true)) return;
     try {
@@ -174,7 +169,6 @@ void RunFolder::prepare(bool overwrite) {
     const fs::path itself = folder_.has_filename() ? folder_ : folder_.parent_path();
     if (fs::exists(itself) && !fs::is_directory(itself))
         throw Error(ErrorKind::usage, folder_.string() + ": expected a folder, found a file");
-    made_ = create_folder(folder_);
     lock_.take(folder_);
     if (!fs::is_empty(folder_)) {
         if (!overwrite)

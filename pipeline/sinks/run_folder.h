@@ -40,15 +40,12 @@ struct RunFolderFiles {
 
 class RunFolder {
 public:
-    /// Makes the folder. With `overwrite` it may hold an earlier run's files, which stay until
-    /// begin(). Throws Error: usage for a folder that another run writes to, that holds something,
-    /// without `overwrite`, or holds a file that would be replaced and is not an earlier run's by
-    /// its record; failed when it cannot be made or written to.
+    /// Makes the folder; where it stays empty it goes again. With `overwrite` it may hold an
+    /// earlier run's files, which stay until begin(). Throws Error: usage for a folder that another
+    /// run writes to, that holds something, without `overwrite`, or holds a file that would be
+    /// replaced and is not an earlier run's by its record; failed when it cannot be made or written
+    /// to.
     RunFolder(std::filesystem::path folder, bool overwrite, RunFolderFiles files);
-    /// A folder that was made here and holds nothing is removed.
-    ~RunFolder();
-    RunFolder(const RunFolder&) = delete;
-    RunFolder& operator=(const RunFolder&) = delete;
 
     const std::filesystem::path& path() const { return folder_; }
 
@@ -73,7 +70,7 @@ private:
     RunFolderFiles files_;
     FolderLock lock_;
     std::vector<std::filesystem::path> earlier_;  // an earlier run's
-    bool made_ = false, begun_ = false;
+    bool begun_ = false;
     std::vector<std::uint64_t> written_;  // of each kind
 };
 

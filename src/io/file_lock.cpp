@@ -2,12 +2,14 @@
 #include "src/io/file_lock.h"
 
 #include "src/core/error.h"
+#include "src/io/output_paths.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <system_error>
 
 namespace eventide {
 
@@ -27,15 +29,19 @@ bool is_locked(const std::filesystem::path& file) {
 }
 
 FolderLock::~FolderLock() {
+    std::error_code holds_something;
+    if (!made_.empty()) std::filesystem::remove(made_, holds_something);
     if (folder_ >= 0) ::close(folder_);
 }
 
 void FolderLock::take(const std::filesystem::path& folder) {
+    const bool is_new = create_folder(folder);
     folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (!lock_file(folder_))
         throw Error(ErrorKind::usage, folder.string() +
                                           ": expected a folder that no other run writes to, found "
                                           "one that another writes to now");
+    if (is_new) made_ = folder;
 }
 
 }  // namespace eventide

@@ -13,7 +13,7 @@ void unlock_file(int descriptor);
 /// Whether another writer has the file.
 bool is_locked(const std::filesystem::path& file);
 
-/// Holds a folder that one run fills, for as long as it does.
+/// Holds a folder that one run fills, for as long as it does; one that it made and left empty goes.
 class FolderLock {
 public:
     FolderLock() = default;
@@ -21,10 +21,12 @@ public:
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
-    /// Throws Error (usage) where another holds it.
+    /// Makes it, too, where there is none. Throws Error: usage where another holds it, failed where
+    /// it cannot be made.
     void take(const std::filesystem::path& folder);
 
 private:
+    std::filesystem::path made_;  // empty: it was there
     int folder_ = -1;
 };
 

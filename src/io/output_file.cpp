@@ -2,19 +2,15 @@
 #include "src/io/output_file.h"
 
 #include "src/core/error.h"
-#include "src/core/number_text.h"
 #include "src/io/file_identity.h"
 #include "src/io/file_lock.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <optional>
 #include <utility>
 
 namespace eventide {
@@ -23,25 +19,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr mode_t kMode = 0666;   // less what umask takes
-constexpr int kMaxParts = 1000;  // left behind by as many killed runs
-constexpr int kAskAgainMs = 20, kMostAsked = 50;
+constexpr mode_t kMode = 0666;             // less what umask takes
+constexpr int kMaxParts = 1000;            // left behind by as many killed runs
 constexpr std::size_t kLongestStem = 240;  // bytes: with .part below what a name may have
-
-/// Of an open file that the path stands for: what was written to it before, by whomever, stays.
-std::optional<int> descriptor_named(const fs::path& path) {
-    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
-    if (path == "/dev/stderr") return STDERR_FILENO;
-    if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return {};
-    const std::string name = path.filename().string();
-    const auto number = number_in<int>(name);
-    return number && std::to_string(*number) == name ? number : std::nullopt;  // not "09"
-}
-
-Error existing_file(const std::string& name) {
-    return {ErrorKind::usage,
-            name + ": exists already; --overwrite (in the library overwrite) replaces it"};
-}
 
 }  // namespace
 
@@ -50,7 +30,9 @@ void OutputFile::fail(const char* doing, int error) const {
 }
 
 OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
-    : name_{path == "-" ? "standard output" : path.string()}, give_up_{options.give_up} {
+    : name_{path == "-" ? "standard output" : path.string()},
+      give_up_{options.give_up},
+      unread_{options.unread} {
     struct stat facts {};
     if (const auto descriptor = descriptor_named(path)) {
         owned_ = false;
@@ -84,30 +66,6 @@ OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
 OutputFile::~OutputFile() {
     if (owned_ && file_ >= 0) ::close(file_);
     forget_new_file();
-}
-
-/// open() of a pipe without a reader would wait where no signal can end it, and so would write() of
-/// one that is full; so both are asked again and again.
-void OutputFile::open_pipe() {
-    for (;;) {
-        file_ = ::open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-        if (file_ >= 0) return;
-        if (errno != ENXIO) fail("opened", errno);
-        if (give_up_ && give_up_()) {
-            reader_gone_ = true;
-            return;
-        }
-        ::poll(nullptr, 0, kAskAgainMs);
-    }
-}
-
-/// A pipe that is somebody else's, so that not to wait for its reader is a matter of ours alone.
-void OutputFile::open_again() {
-    const std::string again = "/proc/self/fd/" + std::to_string(file_);
-    const int file = ::open(again.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return;
-    file_ = file;
-    owned_ = true;
 }
 
 void OutputFile::open_growing(bool overwrite) {
@@ -171,18 +129,8 @@ void OutputFile::begin() {
     }
 }
 
-void OutputFile::hold_at_most(std::size_t bytes) {
-    const int most = ::fcntl(file_, F_GETPIPE_SZ);  // an error for what is no pipe
-    if (most > 0 && bytes < std::size_t(most)) ::fcntl(file_, F_SETPIPE_SZ, int(bytes));
-}
-
-bool OutputFile::takes_at_once() const {
-    pollfd asked{file_, POLLOUT, 0};
-    return ::poll(&asked, 1, 0) != 0;
-}
-
 void OutputFile::write(std::span<const std::byte> bytes) {
-    if (reader_gone_) return;
+    if (!is_read()) return;
     begin();
     int asked = 0;
     while (!bytes.empty()) {
@@ -191,26 +139,13 @@ void OutputFile::write(std::span<const std::byte> bytes) {
             bytes = bytes.subspan(std::size_t(n));
             asked = 0;
         } else if (errno == EPIPE) {
-            reader_gone_ = true;
-            return;
+            return lose_reader(PipeReader::left);
         } else if (errno == EAGAIN) {  // ours, or standard output that others made non-blocking
-            if (!wait_for_room(asked)) {
-                reader_gone_ = true;
-                return;
-            }
+            if (!wait_for_room(asked)) return lose_reader(PipeReader::stalled);
         } else if (errno != EINTR) {
             fail("written", errno);
         }
     }
-}
-
-/// `asked`: how often somebody wanted to give up since the reader last took something. False once
-/// that is long enough.
-bool OutputFile::wait_for_room(int& asked) {
-    pollfd waiting{file_, POLLOUT, 0};
-    ::poll(&waiting, 1, kAskAgainMs);
-    if (!give_up_ || !give_up_()) return true;
-    return ++asked < kMostAsked;
 }
 
 void OutputFile::write(std::string_view text) {
@@ -281,34 +216,6 @@ void OutputFile::close() {
 void OutputFile::forget_new_file() {
     if (!part_.empty()) ::unlink(std::exchange(part_, {}).c_str());
     if (std::exchange(made_, false) && !begun_) ::unlink(path_.c_str());
-}
-
-void refuse_existing(const fs::path& path, bool overwrite) {
-    if (path.empty())
-        throw Error(ErrorKind::usage, "output: expected the name of a file, found none");
-    std::error_code none;
-    if (fs::is_directory(path, none))
-        throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
-    if (!overwrite && would_replace(path)) throw existing_file(path.string());
-}
-
-bool would_replace(const fs::path& path) {
-    std::error_code none;
-    return fs::is_regular_file(path, none) && !names_open_file(path) &&
-           fs::file_size(path, none) > 0;
-}
-
-bool names_open_file(const fs::path& path) {
-    return descriptor_named(path).has_value();
-}
-
-bool create_folder(const fs::path& path) {
-    std::error_code error;
-    const bool created = fs::create_directories(path, error);
-    if (error)
-        throw Error(ErrorKind::failed,
-                    path.string() + ": cannot be created: " + system_words(error.value()));
-    return created;
 }
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes, bool overwrite) {

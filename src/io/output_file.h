@@ -1,6 +1,8 @@
 // A file being written: the one place where files of the user are made or replaced.
 #pragma once
 
+#include "src/io/output_paths.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -21,12 +23,26 @@ enum class Appears {
     growing
 };
 
+/// What became of whoever reads a pipe; of all other files always `takes`.
+enum class PipeReader {
+    takes,
+    never_came,  ///< nobody opened it until the wait was given up
+    stalled,     ///< took nothing until the wait was given up
+    left         ///< closed it
+};
+
+/// Behind the pipe's name and a colon: "nobody read it", "its reader went away".
+std::string_view text_of(PipeReader reader);
+
 struct OutputOptions {
     bool overwrite = false;
     Appears appears = Appears::whole;
     /// Asked while a named pipe waits for its reader, and while a pipe is full: true gives up, of a
     /// full one after a second in which its reader took nothing. May be empty.
     std::function<bool()> give_up = {};
+    /// Told once, by whichever call notices it, when nothing more goes into a pipe. Must not throw;
+    /// may be empty.
+    std::function<void(const std::string& name, PipeReader)> unread = {};
 };
 
 class OutputFile {
@@ -44,8 +60,9 @@ public:
     bool is_seekable() const { return seekable_; }
     /// Others see what is written as it is written.
     bool is_shown() const { return part_.empty(); }
-    /// Whoever read the pipe went away, or was given up: no error, but nothing is written any more.
-    bool reader_gone() const { return reader_gone_; }
+    /// Without one that takes it nothing is written any more, which is no error.
+    PipeReader reader() const { return reader_; }
+    bool is_read() const { return reader_ == PipeReader::takes; }
 
     /// A pipe holds about so many bytes from now on, if it held more; at least a page of memory.
     void hold_at_most(std::size_t bytes);
@@ -73,6 +90,7 @@ private:
     void open_pipe();
     void open_again();
     bool wait_for_room(int& asked);
+    void lose_reader(PipeReader why);
     void open_growing(bool overwrite);
     void take_alone();
     void open_beside(bool overwrite);
@@ -86,29 +104,17 @@ private:
     std::filesystem::path part_;  // beside it; empty when there is none (any more)
     std::string name_;
     std::function<bool()> give_up_;
+    std::function<void(const std::string&, PipeReader)> unread_;
     int file_ = -1;
     bool owned_ = true;  // standard output is not ours to close
-    bool seekable_ = false, reader_gone_ = false;
+    PipeReader reader_ = PipeReader::takes;
+    bool seekable_ = false;
     bool replaces_ = false;         // a file was there, and may go
     bool had_earlier_ = false;      // it held something
     bool has_other_names_ = false;  // what was there: hard links
     bool made_ = false;             // by us, under its own name
     bool begun_ = false;            // it got a byte
 };
-
-/// Throws Error (usage) when `path` is empty, a folder, or a file with something in it and
-/// `overwrite` is not set: for a word early in long work, since OutputFile asks again.
-void refuse_existing(const std::filesystem::path& path, bool overwrite);
-
-/// Whether there is a file with something in it, which OutputFile would replace.
-bool would_replace(const std::filesystem::path& path);
-
-/// Whether the path stands for a file that is open already: "-", /dev/stdout, /dev/fd/3.
-bool names_open_file(const std::filesystem::path& path);
-
-/// A folder and those above it; false where it exists already. Throws Error (failed) with the
-/// system's words.
-bool create_folder(const std::filesystem::path& path);
 
 /// A whole file at once. Throws as OutputFile.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes,

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <array>
@@ -40,17 +41,59 @@ std::string refusal(const std::string& path, const OutputOptions& options) {
     return {};
 }
 
+/// What OutputOptions::unread was told, a line each time.
+struct Unread {
+    std::string all;
+    auto listener() {
+        return [this](const std::string& name, PipeReader why) {
+            all += name + ": " + std::string{text_of(why)} + "\n";
+        };
+    }
+};
+
+TEST(OutputFile, APipeWhoseReaderGoesAwayIsToldOnceAndIsNoError) {
+    signal(SIGPIPE, SIG_IGN);
+    const TempFolder temp;
+    ASSERT_EQ(::mkfifo((temp / "pipe").c_str(), 0600), 0);
+    const int reader = ::open((temp / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    Unread told;
+    OutputFile file{temp / "pipe", {.unread = told.listener()}};
+    file.write("first");
+    EXPECT_TRUE(file.is_read());
+    ::close(reader);
+    for (int i = 0; i < 2; ++i) file.write("more");
+    EXPECT_EQ(file.reader(), PipeReader::left);
+    file.close();
+    EXPECT_EQ(told.all, temp / "pipe: its reader went away\n");
+}
+
+TEST(OutputFile, APipeThatNobodyOpensIsSaidToHaveHadNoReader) {
+    const TempFolder temp;
+    ASSERT_EQ(::mkfifo((temp / "pipe").c_str(), 0600), 0);
+    int asked = 0;
+    Unread told;
+    OutputFile file{temp / "pipe",
+                    {.give_up = [&] { return ++asked == 2; }, .unread = told.listener()}};
+    file.write("never seen");
+    EXPECT_EQ(file.reader(), PipeReader::never_came);
+    file.close();
+    EXPECT_EQ(told.all, temp / "pipe: nobody read it\n");
+}
+
 TEST(OutputFile, AFullPipeIsGivenUpWhenAskedTo) {
     std::array<int, 2> ends{};
     ASSERT_EQ(::pipe(ends.data()), 0);
     bool wanted = false;
-    OutputFile file{"/dev/fd/" + std::to_string(ends[1]), {.give_up = [&] { return wanted; }}};
+    const std::string name = "/dev/fd/" + std::to_string(ends[1]);
+    Unread told;
+    OutputFile file{name, {.give_up = [&] { return wanted; }, .unread = told.listener()}};
     EXPECT_TRUE(file.takes_at_once());
     file.write("first");
-    EXPECT_FALSE(file.reader_gone());
+    EXPECT_TRUE(file.is_read());
     wanted = true;
-    file.write(std::string(1 << 20, 'x'));
-    EXPECT_TRUE(file.reader_gone());
+    for (int i = 0; i < 2; ++i) file.write(std::string(1 << 20, 'x'));
+    EXPECT_FALSE(file.is_read());
+    EXPECT_EQ(told.all, name + ": its reader took nothing any more\n");
     EXPECT_FALSE(file.takes_at_once());
     EXPECT_EQ(::fcntl(ends[1], F_GETFL) & O_NONBLOCK, 0) << "of others, who share it";
     file.close();

@@ -1,13 +1,10 @@
 // Frames are rendered when the latent maps they need are there, and with no other.
-#include "pipeline/frame_output.h"
 #include "src/core/error.h"
-#include "tests/support/toy_stages.h"
+#include "tests/pipeline/frame_output_by_hand.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,54 +13,9 @@ namespace {
 
 using namespace test;
 
-/// Event windows of 10 us from `begin_us` on, given one by one.
-struct Ending {
-    explicit Ending(int lookahead, FrameRate rate = {200'000, 1},  // a frame each 5 us
-                    bool allow_silence = false)
-        : output(
-              renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence, &changes},
-              [] { return 0; }, stop, counters, keeper) {
-        sink.before_write = [this](auto) {
-            pushed.push_back(renderer.pushed());
-            lookaheads.push_back(sink.lookahead);
-        };
-    }
-    void give_after_gap(std::int64_t begin_us) { give(begin_us, false, true); }
-    void give(std::int64_t begin_us, bool reset_before = false, bool gap_before = false) {
-        Encoded encoded;
-        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-        encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
-        encoded.latent.events = 1;
-        encoded.latent.reset_before = reset_before;
-        encoded.latent.gap_before = gap_before;
-        output.take(encoded);
-    }
-    void give_silence(std::int64_t begin_us, std::int64_t end_us) {
-        Encoded encoded;
-        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-        encoded.latent.window = {from_us(begin_us), from_us(end_us)};
-        output.take(encoded);
-    }
-    std::vector<std::int64_t> times() const {
-        std::vector<std::int64_t> times;
-        for (const auto& seen : sink.seen) times.push_back(seen.t_us);
-        return times;
-    }
-
-    ToyRenderer renderer;
-    ToySink sink;
-    std::vector<std::size_t> pushed;  // latent maps the renderer had, per frame
-    std::vector<int> lookaheads;      // what the sink had been told, per frame
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    LiveChanges changes;
-    FrameOutput output;
-};
-
 TEST(FrameOutput, RendersEachFrameWithItsLookahead) {
     for (const int lookahead : {0, 1, 2}) {
-        Ending e(lookahead);
+        FrameOutputByHand e(lookahead);
         for (int k = 0; k < 4; ++k) e.give(10 * k);
         const auto before_end = e.sink.seen.size();
         EXPECT_EQ(before_end, std::size_t(1 + 2 * (4 - lookahead)));
@@ -82,20 +34,20 @@ TEST(FrameOutput, RendersEachFrameWithItsLookahead) {
 }
 
 TEST(FrameOutput, GivesNoneOneOrManyFramesPerEventWindow) {
-    Ending seldom(0, {40'000, 1});  // each 25 us
+    FrameOutputByHand seldom(0, {40'000, 1});  // each 25 us
     for (int k = 0; k < 6; ++k) seldom.give(10 * k);
     EXPECT_EQ(seldom.times(), (std::vector<std::int64_t>{0, 25, 50}));
-    Ending often(0, {1'000'000, 1});
+    FrameOutputByHand often(0, {1'000'000, 1});
     for (int k = 0; k < 6; ++k) often.give(10 * k);
     EXPECT_EQ(often.sink.seen.size(), 61U);
-    Ending without_rate(1, {});
+    FrameOutputByHand without_rate(1, {});
     for (int k = 0; k < 3; ++k) without_rate.give(10 * k);
     without_rate.output.finish();
     EXPECT_EQ(without_rate.times(), (std::vector<std::int64_t>{10, 20, 30}));
 }
 
 TEST(FrameOutput, TellsOfAGapBeforeAWindowWithoutFramesWithTheNextFrame) {
-    Ending e(0, {40'000, 1});  // each 25 us
+    FrameOutputByHand e(0, {40'000, 1});  // each 25 us
     e.give(0);
     e.give_after_gap(10);
     for (int k = 2; k < 6; ++k) e.give(10 * k);
@@ -106,7 +58,7 @@ TEST(FrameOutput, TellsOfAGapBeforeAWindowWithoutFramesWithTheNextFrame) {
 }
 
 TEST(FrameOutput, TellsOfAGapWithAllFramesOfItsWindow) {
-    Ending e(0);  // each 5 us
+    FrameOutputByHand e(0);  // each 5 us
     e.give(0);
     e.give_after_gap(10);
     e.give(20);
@@ -116,7 +68,7 @@ TEST(FrameOutput, TellsOfAGapWithAllFramesOfItsWindow) {
 }
 
 TEST(FrameOutput, FinishesTheOldStreamBeforeANewOne) {
-    Ending e(2);
+    FrameOutputByHand e(2);
     for (int k = 0; k < 3; ++k) e.give(1000 + 10 * k);
     e.give(3, true);
     EXPECT_EQ(e.times().back(), 1030);
@@ -127,7 +79,7 @@ TEST(FrameOutput, FinishesTheOldStreamBeforeANewOne) {
 }
 
 TEST(FrameOutput, StopsBeforeFramesWithoutEnd) {
-    Ending e(0);
+    FrameOutputByHand e(0);
     e.give(0);
     e.give_silence(10, 1000);
     const auto before = e.sink.count;
@@ -145,7 +97,7 @@ TEST(FrameOutput, StopsBeforeFramesWithoutEnd) {
 
 TEST(FrameOutput, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
     for (const bool allowed : {false, true}) {
-        Ending e(0, {1'000'000, 1}, allowed);
+        FrameOutputByHand e(0, {1'000'000, 1}, allowed);
         e.sink.keeps = false;
         e.sink.before_write = nullptr;
         e.give_silence(0, 600'000);
@@ -174,53 +126,6 @@ TEST(FrameOutput, ALiveSourceMayBeSilentForHours) {
     encoded.latent.window = {from_us(0), from_us(SilenceGuard::kMost + 1)};
     EXPECT_TRUE(output.take(encoded));
     EXPECT_GT(sink.count, 0U);
-}
-
-/// A sink somebody watches from time to time.
-class WatchedSink final : public Sink {
-public:
-    void write(const Frame& frame) override { times_us.push_back(to_us(frame.t)); }
-    bool is_watched() const override { return watched; }
-
-    bool watched = true;
-    std::vector<std::int64_t> times_us;
-};
-
-TEST(FrameOutput, RendersNothingThatNobodyWatches) {
-    ToyRenderer renderer;
-    WatchedSink first, second;
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&first, &second}, {{100'000, 1}, {}, 0, false, 1, false}, [] { return 0; }, stop,
-        counters, keeper);
-    for (int k = 0; k < 6; ++k) {
-        first.watched = k < 2 || k == 5;
-        second.watched = k == 5;
-        Encoded encoded;
-        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-        encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
-        encoded.latent.events = 1;
-        output.take(encoded);
-    }
-    EXPECT_EQ(first.times_us, (std::vector<std::int64_t>{0, 10, 20, 60}));
-    EXPECT_EQ(second.times_us, first.times_us) << "what one of them watches all get";
-    EXPECT_EQ(counters.snapshot().skipped_frames, 3U);
-    EXPECT_EQ(renderer.pushed(), 6U) << "the network goes on";
-}
-
-TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
-    ToyRenderer renderer;
-    ToySink bad, good;
-    bad.before_close = [] { throw std::runtime_error("close"); };
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters, keeper);
-    EXPECT_THROW(output.close(), std::runtime_error);
-    EXPECT_EQ(good.closed, 1);
 }
 
 /// Its third frame has a NaN, in its intensity or its sigma.
@@ -270,85 +175,8 @@ TEST(FrameOutput, WritesNoFrameThatIsNotFinite) {
     }
 }
 
-TEST(FrameOutput, StopsWhenASinkWantsNoMore) {
-    Ending e(0);
-    e.sink.wants = 3;
-    for (int k = 0; k < 4; ++k) e.give(10 * k);
-    EXPECT_EQ(e.sink.count, 3U);
-}
-
 TEST(FrameOutput, RefusesAnImpossibleLookahead) {
-    for (const int lookahead : {-1, 3}) EXPECT_THROW(Ending{lookahead}, Error);
-}
-
-TEST(FrameOutput, ChangesItsRateWhileItRuns) {
-    Ending e(0);
-    e.give(0);
-    e.changes.set_rate({100'000, 1});  // a frame each 10 us
-    e.give(10);
-    e.give(20);
-    EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 30}));
-    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
-}
-
-TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
-    Ending e(0);
-    e.give(0);
-    e.changes.set_halvings(1);
-    e.give(10);
-    e.changes.set_halvings(2);
-    e.give(20);
-    e.changes.set_halvings(0);
-    e.give(30);
-    EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 35, 40}));
-    for (const auto& seen : e.sink.seen) EXPECT_EQ(std::int64_t(seen.index) * 5, seen.t_us);
-    EXPECT_EQ(e.counters.present.skipped_frames.value(), 3U);
-}
-
-TEST(FrameOutput, OfALiveSourceRendersEverySecondFrameWhereThatIsAskedFor) {
-    ToyRenderer renderer;
-    ToySink sink;
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&sink}, {.rate = {200'000, 1}, .live = true, .halvings = 1}, [] { return 0; },
-        stop, counters, keeper);
-    Encoded encoded;
-    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-    encoded.latent.window = {from_us(0), from_us(20)};
-    output.take(encoded);
-    EXPECT_EQ(sink.count, 3U) << "of 0, 5, 10, 15 and 20 us";
-}
-
-/// A sink before which somebody looks at each frame for an hour.
-class HoldingSink final : public Sink {
-public:
-    void write(const Frame& frame) override { arrived.push_back(frame.arrived); }
-    HostTime::duration held() const override { return std::chrono::hours{1}; }
-
-    std::vector<HostTime> arrived;
-};
-
-TEST(FrameOutput, LatencyCountsFromTheNewestDataAndWithoutPauses) {
-    ToyRenderer renderer;
-    HoldingSink sink;
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&sink}, {.rate = {100'000, 1}}, [] { return 0; }, stop, counters, keeper);
-    const HostTime begun = std::chrono::steady_clock::now();
-    const std::vector<HostTime> arrived{begun, begun + std::chrono::microseconds{10}};
-    for (int k = 0; k < 2; ++k) {
-        Encoded encoded;
-        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-        encoded.latent.window = {from_us(10 * k + 1), from_us(10 * k + 10)};
-        encoded.latent.arrived = arrived[std::size_t(k)];
-        output.take(encoded);
-    }
-    EXPECT_EQ(sink.arrived, arrived);
-    EXPECT_EQ(counters.snapshot().latency.max.count(), 0) << "frames came an hour before that";
+    for (const int lookahead : {-1, 3}) EXPECT_THROW(FrameOutputByHand{lookahead}, Error);
 }
 
 TEST(FrameOutput, LearnsWhatAFrameTakesAndRendersNoneThatWouldBeLateButTheNewest) {
@@ -368,69 +196,6 @@ TEST(FrameOutput, LearnsWhatAFrameTakesAndRendersNoneThatWouldBeLateButTheNewest
     }
     EXPECT_EQ(sink.count, 21U + 1U) << "as yet nothing was known of the first window's";
     EXPECT_EQ(sink.seen.back().t_us, 200);
-}
-
-class PreviewSink final : public Sink {
-public:
-    void write(const Frame& frame) override { shown.push_back(frame.event_preview(0, 0)); }
-    std::vector<float> shown;
-};
-
-TEST(FrameOutput, EveryFrameOfAWindowShowsThatWindowsEvents) {
-    ToyRenderer renderer;
-    PreviewSink sink;
-    StopRequest stop;
-    Counters counters;
-    LatencyKeeper keeper{{}};
-    FrameOutput output(
-        renderer, {&sink}, {.rate = {200'000, 1}, .lookahead = 1}, [] { return 0; }, stop, counters,
-        keeper);
-    for (int k = 0; k < 4; ++k) {
-        Encoded encoded;
-        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
-        encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
-        encoded.event_preview = Array2<float>(kToyHeight, kToyWidth);
-        encoded.event_preview(0, 0) = float(k);
-        output.take(encoded);
-    }
-    output.finish();
-    EXPECT_EQ(sink.shown, (std::vector<float>{0, 0, 0, 1, 1, 2, 2, 3, 3}));
-}
-
-TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
-    Ending e(2);
-    for (int k = 0; k < 4; ++k) e.give(10 * k);
-    EXPECT_EQ(e.times().back(), 20) << "two event windows are waited for";
-    e.changes.set_lookahead(0);
-    e.give(40);
-    EXPECT_EQ(e.times().back(), 50) << "none is waited for";
-    e.changes.set_lookahead(1);
-    e.give(50);
-    EXPECT_EQ(e.times().back(), 50);
-    e.give(60);
-    EXPECT_EQ(e.times().back(), 60);
-    e.output.finish();
-    EXPECT_EQ(e.times().size(), 15U);
-    EXPECT_EQ(e.lookaheads, (std::vector<int>{2, 2, 2, 2, 2, 2, 2, 1, 1, 0, 0, 1, 1, 0, 0}));
-    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
-}
-
-TEST(FrameOutput, KeepsItsLookaheadWhereOneIsAskedForThatThereIsNot) {
-    for (const int impossible : {3, 1000, -1}) {
-        Ending e(1);
-        e.changes.set_lookahead(impossible);
-        for (int k = 0; k < 4; ++k) e.give(10 * k);
-        EXPECT_EQ(e.times().back(), 30) << impossible << ": all but the last window's frames";
-    }
-}
-
-TEST(FrameOutput, KeepsWhatItsRendererCannotChange) {
-    Ending e(2);
-    e.renderer.changeable = false;
-    e.changes.set_lookahead(0);
-    e.changes.set_size(640, 480);
-    for (int k = 0; k < 3; ++k) e.give(10 * k);
-    EXPECT_EQ(e.times().back(), 10);
 }
 
 }  // namespace

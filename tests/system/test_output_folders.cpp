@@ -100,13 +100,27 @@ TEST_F(Outputs, AFolderOfStatesLosesAnEarlierRunsAndNothingElse) {
     EXPECT_NE(late.error.find("--states-at 9s: expected a time before"), std::string::npos);
 }
 
-TEST_F(Outputs, TwoRunsDoNotMixTheirStates) {
-    fs::create_directories(temp_ / "s");
+TEST_F(Outputs, TwoRunsDoNotFillOneFolder) {
     FolderLock of_another_run;
     of_another_run.take(temp_ / "s");
-    expect_refused({"run", "rec.aedat4", "--frames", "ignore", "--states-out", "s/", "--states-at",
-                    "100ms", "--overwrite"},
-                   "s/: expected a folder that no other run writes to");
+    for (std::vector<std::string> command :
+         {std::vector<std::string>{"run", "rec.aedat4", "--frames", "ignore", "--states-at",
+                                   "100ms", "--states-out"},
+          {"evaluate", "rec.aedat4", "--figure", "events", "--plots"},
+          {"bench", "--plots"},
+          {"bench", "--report"},
+          {"stress", "--soak", "0.1", "--models", "default", "--plots"}}) {
+        command.insert(command.end(), {"s/", "--overwrite"});
+        expect_refused(command, "s/: expected a folder that no other run writes to");
+    }
+}
+
+TEST_F(Outputs, AFolderForWhatWasNotMadeIsNotLeftBehind) {
+    EXPECT_NE(eventide({"evaluate", "rec.aedat4", "--from", "9s", "--figure", "events", "--plots",
+                        "new/"})
+                  .exit_code,
+              0);
+    EXPECT_FALSE(fs::exists(temp_ / "new"));
 }
 
 TEST_F(Outputs, ASimulatedFolderIsReplacedByAnotherOnly) {

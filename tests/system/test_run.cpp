@@ -1,19 +1,11 @@
 // eventide run, as a user runs it: what is in the files afterwards.
 #include "tests/support/flickering_light.h"
-#include "tests/support/manager_socket.h"
 #include "tests/system/program_test.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/ioctl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <climits>
 #include <filesystem>
 #include <fstream>
 
@@ -107,35 +99,12 @@ TEST_F(Run, SlowMotionIsSlowInFilesAndPipes) {
     EXPECT_EQ(probe(temp_ / "a.y4m", "r_frame_rate,nb_read_frames"), "25/1,51\n");
 }
 
-TEST_F(Run, StreamsY4mToStandardOutputAndFfmpegReadsIt) {
-    const Result result =
-        run({"bash", "-c",
-             std::string{EVENTIDE_PROGRAM} + " run " + recording() + " --model " + model() +
-                 " --fps 200 --out - | ffprobe -v error -count_frames " +
-                 "-show_entries stream=nb_read_frames,r_frame_rate,width -of " + "csv=p=0 -"});
-    EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_TRUE(result.output == "64,200/1,80\n" || result.output == "64,200/1,81\n")
-        << result.output;
-}
-
 TEST_F(Run, RawNumbersHaveTheSizeThatIsDocumented) {
     const Result result = eventide({"run", recording(), "--fps", "20", "--size", "33x17", "--out",
                                     "grayf32:raw", "--uncertainty", "separate", "--out", "a/"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const std::size_t frames = column(temp_ / "a/timestamps.csv", 0).size();
     EXPECT_EQ(std::filesystem::file_size(temp_ / "raw"), frames * 2 * 33 * 17 * 4);
-}
-
-TEST_F(Run, ReadsTextFromStandardInput) {
-    std::string text = "16 16\n";
-    for (int i = 0; i < 2000; ++i)
-        text += "0." + std::to_string(100'000 + 50 * i) + " " + std::to_string(i % 16) + " " +
-                std::to_string(i / 16 % 16) + " " + std::to_string(i % 2) + "\n";
-    const Result result =
-        eventide({"run", "-", "--fps", "50", "--out", "gray8:-"}, {.input = text});
-    ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_EQ(result.output.size() % 256, 0U);
-    EXPECT_GE(result.output.size(), 256U * 4);
 }
 
 TEST_F(Run, SaysThatImagesHaveAnotherClockAndRendersTheEvents) {
@@ -156,37 +125,6 @@ TEST_F(Run, SaysThatImagesHaveAnotherClockAndRendersTheEvents) {
                                             "at least 1633953689 s apart"));
         const auto found = column(temp_ / (source + ".frames/timestamps.csv"), 2);
         EXPECT_NEAR(double(found.size()), double(times.size()), 1) << source;
-    }
-}
-
-TEST_F(Run, GoesThroughANamedPipe) {
-    ASSERT_EQ(mkfifo((temp_ / "pipe").c_str(), 0600), 0);
-    Process process = start({"run", recording(), "--fps", "20", "--out", "gray8:pipe"});
-    const std::string bytes = read_text(temp_ / "pipe");
-    EXPECT_EQ(process.wait().exit_code, 0);
-    EXPECT_GE(bytes.size(), 7U * 64 * 48);
-    EXPECT_EQ(bytes.size() % (64 * 48), 0U);
-}
-
-TEST_F(Run, GoesThroughSeveralNamedPipesInWhateverOrderTheyAreOpened) {
-    for (const std::string opens : {"exec 3<frames 4<events", "exec 4<events 3<frames"}) {
-        const Result result = in_shell(
-            "rm -f frames events; mkfifo frames events; "
-            "eventide run recording --fps 10 --out gray8:frames --events-out text:events & " +
-            opens + "; cat <&4 > events.txt & wc -c <&3; wait");
-        ASSERT_EQ(result.exit_code, 0) << result.error;
-        EXPECT_NE(result.output, "0\n") << opens;
-        EXPECT_GT(std::filesystem::file_size(temp_ / "events.txt"), 1000U) << opens;
-    }
-}
-
-TEST_F(Run, OpensAPipeForItsReaderBeforeAnythingIsWrittenToItsSource) {
-    for (const std::string command :
-         {"run in --fps 10 --out gray8:out", "convert in out --to-format text"}) {
-        const Result result = in_shell("rm -f in out; mkfifo in out; eventide " + command +
-                                       " & exec 3<out; cat recording > in & wc -c <&3; wait");
-        ASSERT_EQ(result.exit_code, 0) << result.error;
-        EXPECT_GT(std::stol(result.output), 1000) << command;
     }
 }
 
@@ -296,56 +234,6 @@ TEST_F(Run, TakesASimulationInPlaceOfACamera) {
                                     "50", "--latency", "none", "--out", "a/"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_GE(column(temp_ / "a/timestamps.csv", 0).size(), 9U);
-}
-
-TEST_F(Run, ASourceThatHasNotBegunIsAliveForAServiceManager) {
-    ManagerSocket socket{temp_ / "notify"};
-    Process process = start(
-        {"run", "udp://127.0.0.1:0?size=32x24", "--out", "null"},
-        {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}}});
-    while (process.running() && socket.next() != "WATCHDOG=1") continue;
-    process.signal(SIGTERM);
-    EXPECT_EQ(process.wait().exit_code, 0);
-}
-
-TEST_F(Run, WhatWaitsForTheReaderOfARecordingIsAliveForAServiceManager) {
-    const std::string pipe = temp_ / "all.aedat4";
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    ManagerSocket socket{temp_ / "notify"};
-    Process process = start(
-        {"run", "sim:demo?size=32x24", "--out", "null", "--record", pipe},
-        {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}}});
-    const int reader = ::open(pipe.c_str(), O_RDONLY);
-    const int size = ::fcntl(reader, F_GETPIPE_SZ);
-    for (int waiting = 0; process.running() && waiting + PIPE_BUF < size;)
-        ::ioctl(reader, FIONREAD, &waiting);
-    // What has come until then is worked on for a while; a status comes once a second.
-    int statuses = 0, alive = 0;
-    while (process.running() && statuses < 4) {
-        const std::string message = socket.next();
-        statuses += message.starts_with("STATUS=") ? 1 : 0;
-        alive += statuses == 3 && message == "WATCHDOG=1" ? 1 : 0;
-    }
-    EXPECT_GT(alive, 0);
-    process.signal(SIGTERM);
-    EXPECT_EQ(process.wait().exit_code, 0);
-    ::close(reader);
-}
-
-TEST_F(Run, TellsAServiceManagerOfItsBeginningItsLifeAndItsEnd) {
-    ManagerSocket socket{temp_ / "notify"};
-    const Result result =
-        run({EVENTIDE_PROGRAM, "run", "sim:demo?size=32x24&seconds=1.2", "--out", "null"},
-            {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}},
-             .folder = temp_.path().string()});
-    ASSERT_EQ(result.exit_code, 0) << result.error;
-    std::vector<std::string> messages;
-    for (std::string next = socket.next(); next != "nothing"; next = socket.next())
-        messages.push_back(next);
-    ASSERT_GE(messages.size(), 3U);
-    EXPECT_EQ(messages.front(), "READY=1");
-    EXPECT_EQ(messages.back(), "STOPPING=1");
-    EXPECT_GE(std::ranges::count(messages, "WATCHDOG=1"), 1);
 }
 
 TEST_F(Run, AVideoWhoseTimesAreRoundedSaysSo) {

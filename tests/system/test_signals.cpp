@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -80,6 +81,7 @@ TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
     for (const std::string& made : {pipe, video}) ASSERT_EQ(mkfifo(made.c_str(), 0600), 0);
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", recording(), "--out", "null", "--events-out", pipe},
+          {"run", recording(), "--out", "null", "--record", pipe},
           {"run", recording(), "--out", "null", "--stats", pipe},
           {"run", recording(), "--out", "null", "--state-out", pipe},
           {"run", recording(), "--out", "gray8:" + pipe},
@@ -89,7 +91,12 @@ TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
         Process process = start(command);
         while (process.running() && !process.catches(SIGTERM)) continue;
         process.signal(SIGTERM);
-        EXPECT_LE(process.wait().exit_code, 1) << testing::PrintToString(command);
+        const Result result = process.wait();
+        EXPECT_LE(result.exit_code, 1) << testing::PrintToString(command);
+        EXPECT_NE(result.error.find(command.back().substr(command.back().find('/')) +
+                                    ": nobody read it\n"),
+                  std::string::npos)
+            << testing::PrintToString(command) << result.error;
     }
 }
 
@@ -170,17 +177,18 @@ TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
     EXPECT_EQ(result.error.find("error"), std::string::npos) << result.error;
 }
 
+void leave(const std::string& pipe) {
+    const int reader = ::open(pipe.c_str(), O_RDONLY);
+    char byte = 0;
+    EXPECT_EQ(::read(reader, &byte, 1), 1);
+    ::close(reader);
+}
+
 TEST_F(Signals, EveryPipeWhoseReaderGoesAwayEndsTheRunOrIsOneOutputLess) {
     const std::string record = temp_ / "all.aedat4", events = temp_ / "events.txt",
                       video = temp_ / "video.mp4";
     for (const std::string& pipe : {record, events, video})
         ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    const auto leave = [](const std::string& pipe) {
-        const int reader = ::open(pipe.c_str(), O_RDONLY);
-        char byte = 0;
-        EXPECT_EQ(::read(reader, &byte, 1), 1);
-        ::close(reader);
-    };
     for (const auto& [option, pipe] : {std::pair{std::string{"--record"}, record},
                                        {std::string{"--events-out"}, events},
                                        {std::string{"--out"}, video}}) {
@@ -203,6 +211,39 @@ TEST_F(Signals, EveryPipeWhoseReaderGoesAwayEndsTheRunOrIsOneOutputLess) {
     }
 }
 
+TEST_F(Signals, SigmaApartFromItsVideoIsAnOutputOfItsOwn) {
+    const std::string video = temp_ / "video.mp4", sigma = temp_ / "video.sigma.mp4";
+    for (const std::string& pipe : {video, sigma}) ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    Process process = start({"run", kEndless, "--out", video, "--uncertainty", "separate"});
+    const int reader = ::open(video.c_str(), O_RDONLY);
+    leave(sigma);
+    std::array<char, 4096> bytes{};
+    while (process.error_so_far().find("the run goes on") == std::string::npos)
+        ASSERT_GT(::read(reader, bytes.data(), bytes.size()), 0);
+    ::close(reader);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.error.find(sigma + ": its reader went away; the run goes on"),
+              std::string::npos)
+        << result.error;
+    EXPECT_NE(result.error.find(video + ": its reader went away\n"), std::string::npos)
+        << result.error;
+}
+
+TEST_F(Signals, CountersThatNobodyReadsAnyMoreAreToldAndEndNoRun) {
+    const std::string stats = temp_ / "stats";
+    ASSERT_EQ(mkfifo(stats.c_str(), 0600), 0);
+    Process process =
+        start({"run", kEndless, "--out", "gray8:-", "--stats", stats}, {.output_to_pipe = true});
+    ::close(::open(stats.c_str(), O_RDONLY));
+    EXPECT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
+    process.signal(SIGINT);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.error.find("--stats " + stats + ": its reader went away\n"), std::string::npos)
+        << result.error;
+}
+
 TEST_F(Signals, AConversionWhoseReaderGoesAwayDoesNotSayThatAllWasWritten) {
     Process process =
         start({"convert", recording(), "-", "--to-format", "text"}, {.output_to_pipe = true});
@@ -210,9 +251,18 @@ TEST_F(Signals, AConversionWhoseReaderGoesAwayDoesNotSayThatAllWasWritten) {
     process.close_output();
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_NE(result.error.find("-: its reader did not take all of it"), std::string::npos)
-        << result.error;
+    EXPECT_NE(result.error.find("-: its reader went away"), std::string::npos) << result.error;
     EXPECT_EQ(result.error.find("wrote"), std::string::npos) << result.error;
+}
+
+TEST_F(Signals, ASimulationWhoseReaderGoesAwayEnds) {
+    const std::string pipe = temp_ / "made.aedat4";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    Process process = start({"simulate", "--seconds", "100000", "--size", "64x48", "--out", pipe});
+    leave(pipe);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "eventide: info: " + pipe + ": its reader went away\n");
 }
 
 TEST_F(Signals, AKilledRunLeavesAVideoThatPlaysAndFilesThatAreWhole) {

@@ -12,6 +12,7 @@
 #include "apps/cli/settings/words.h"
 #include "apps/cli/version.h"
 #include "src/core/error.h"
+#include "src/io/file_lock.h"
 
 #include <spdlog/spdlog.h>
 
@@ -130,6 +131,9 @@ int BenchCommand::run(Program& program) {
         for (const char* key : {"still_codes", "still_time"})
             refuse_idle_flag(program.flags, key, "--activity or --report FOLDER");
     name_bench_files(program.files);
+    FolderLock folder;
+    for (const std::string& made : {report_, plots_})  // at most one of them
+        if (!made.empty()) folder.take(made);
     if (!report_.empty()) return report(program);
     std::FILE* const table = table_beside(json_);
     std::fprintf(table, "%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),

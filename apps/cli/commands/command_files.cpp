@@ -58,8 +58,9 @@ void write_result(const std::string& file, const std::string& text, bool overwri
                    {.overwrite = overwrite, .give_up = [&signals] { return signals.stopping(); }}};
     out.write(text);
     out.close();
-    if (out.reader_gone() && signals.stopping())
-        throw Error(ErrorKind::failed, file + ": stopped before its reader had taken all of it");
+    if (!out.is_read() && signals.stopping())
+        throw Error(ErrorKind::failed,
+                    file + ": stopped by a signal, and " + std::string{text_of(out.reader())});
 }
 
 }  // namespace eventide::app

@@ -45,8 +45,8 @@ const Format* target_format(const std::string& file, const std::string& name) {
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
-    if (report.reader_gone)
-        spdlog::info("{}: its reader did not take all of it", file);
+    if (report.reader != PipeReader::takes)
+        spdlog::info("{}: {}", file, text_of(report.reader));
     else
         spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
                      counted(report.bytes_written, "byte"));
@@ -169,7 +169,7 @@ ConvertReport ConvertCommand::copy(Recording& recording, ConvertTarget& target,
         return !program.signals.stopping();
     });
     progress.clear();
-    if (program.signals.stopping())
+    if (program.signals.stopping() && report.reader == PipeReader::takes)
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     return report;
 }

@@ -8,6 +8,7 @@
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/io/file_lock.h"
 
 #include <spdlog/spdlog.h>
 
@@ -241,6 +242,8 @@ int EvaluateCommand::run(Program& program) {
     require_outputs_that_fit();
     require_inputs();
     refuse_idle_flags(program.flags);
+    FolderLock plots;
+    if (!figures_.empty()) plots.take(plots_);
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);

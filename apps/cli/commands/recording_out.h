@@ -28,7 +28,7 @@ public:
     const FormatHolds& holds() const override;
     void write(const Batch& batch) override;
     void finish() override;
-    bool reader_gone() const override { return file_ && file_->reader_gone(); }
+    PipeReader reader() const override { return file_ ? file_->reader() : PipeReader::takes; }
     std::uint64_t bytes_written() const override;
 
 private:

@@ -247,7 +247,8 @@ SimulateCommand::Written SimulateCommand::write(const SimRecordingSettings& what
         }
         if (!batch.events.empty())
             progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
-        return goes_on();
+        const bool is_wanted = out.reader() == PipeReader::takes || truth != nullptr;
+        return is_wanted && goes_on();
     });
     progress.clear();
     out.finish();
@@ -283,10 +284,13 @@ int SimulateCommand::run(Program& program) {
             .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
     const Written written =
         write(what, seen, out, truth ? &*truth : nullptr, goes_on, program.quiet);
-    if (program.signals.stopping())
+    const bool is_read = out.reader() == PipeReader::takes;
+    if (is_read && program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
-    spdlog::info("{}: {}, {}", out_, counted(written.events, "event"),
-                 counted(written.images, "image"));
+    spdlog::info("{}: {}", out_,
+                 is_read
+                     ? counted(written.events, "event") + ", " + counted(written.images, "image")
+                     : text_of(out.reader()));
     if (truth) spdlog::info("{}: {}", truth_, counted(written.truths, "frame"));
     return exit_done;
 }

@@ -12,6 +12,7 @@
 #include "apps/evaluate/plot.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
+#include "src/io/file_lock.h"
 #include "src/model/model_trial.h"
 
 #include <fnmatch.h>
@@ -268,6 +269,8 @@ int StressCommand::run_soak(Program& program) {
                     "--soak with --plots: expected one model (--models NAME), "
                     "found " +
                         std::to_string(models_.size()));
+    FolderLock plots;
+    if (!plots_.empty()) plots.take(plots_);
     std::FILE* const table = table_beside(json_);
     std::fprintf(table, "%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
                  compiler_text().c_str());

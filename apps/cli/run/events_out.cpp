@@ -141,8 +141,6 @@ void EventsOut::write(std::span<const Event> events) {
     if (!batch_.empty()) target_->write(batch_);
     batch_.clear();
     std::swap(batch_, later_);
-    if (target_->reader_gone())
-        if (const auto told = std::exchange(reader_left_, {})) told();
 }
 
 void EventsOut::finish() {

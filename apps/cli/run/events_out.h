@@ -35,16 +35,14 @@ public:
     /// which may begin anew; and how long a stream is to last is known with its first event.
     using Limit = std::function<std::optional<SensorTime>()>;
     /// `filter` may be null; it is borrowed. Events outside of [from, to] are not written.
-    /// `colours` as of WrittenData. `reader_left` is called once, when the reader of a pipe went
-    /// away; it may be empty.
+    /// `colours` as of WrittenData.
     EventsOut(EventFilter* filter, std::unique_ptr<ConvertTarget> target, Limit from, Limit to,
-              ColourFilter colours = ColourFilter::none, std::function<void()> reader_left = {})
+              ColourFilter colours = ColourFilter::none)
         : filter_(filter),
           target_(std::move(target)),
           data_(target_->holds(), colours),
           from_(std::move(from)),
-          to_(std::move(to)),
-          reader_left_(std::move(reader_left)) {}
+          to_(std::move(to)) {}
 
     /// Images and the rest, of which what the target holds is written with the events they came
     /// with, or at once where there are none.
@@ -72,7 +70,6 @@ private:
     std::unique_ptr<ConvertTarget> target_;
     WrittenData data_;
     Limit from_, to_;
-    std::function<void()> reader_left_;  // empty: not asked for, or called
     Batch batch_;
     std::deque<Batch> next_clocks_;          // seen, without the events with which they begin
     Batch later_;                            // than events that the filter holds back

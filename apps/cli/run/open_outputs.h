@@ -1,22 +1,28 @@
 // Outputs for which a run goes on.
 #pragma once
 
+#include "apps/cli/settings/run_settings.h"
+#include "src/io/output_file.h"
+
 #include <atomic>
 #include <cstddef>
 #include <string>
 
 namespace eventide::app {
 
-/// A pipe is no output any more once its reader has gone away. Thread: any.
+/// Those of --out but `null`, --record and --events-out; sigma apart from its video is one more.
+std::size_t count_outputs(const RunSettings& settings);
+
+/// A pipe is no output any more once nobody reads it. Thread: any.
 class OpenOutputs {
 public:
-    void expect(std::size_t outputs) { left_ = std::ptrdiff_t(outputs); }
+    explicit OpenOutputs(std::size_t outputs) : left_(std::ptrdiff_t(outputs)) {}
 
-    /// Says that the reader of `name` went away; once for each. Whether the run goes on for others.
-    bool reader_left(const std::string& name);
+    /// Says that `name` is not read any more; once for each. Whether the run goes on for others.
+    bool go_on_without(const std::string& name, PipeReader why);
 
 private:
-    std::atomic<std::ptrdiff_t> left_{0};
+    std::atomic<std::ptrdiff_t> left_;
 };
 
 }  // namespace eventide::app

@@ -46,11 +46,10 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
             "{}: frames come at no constant rate, and Motion JPEG shows them at {} a second; "
             "--fps with a number, or MP4, keeps their times",
             path, plan.fps);
-    return std::make_unique<VideoSink>(
-        VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
-                      settings.video_preset, settings.video_crf, plan.fps, settings.slow,
-                      settings.events, shown_part(settings, plan.sensor), plan.questions.stopping,
-                      [path, outputs = plan.outputs] { return outputs->reader_left(path); }});
+    return std::make_unique<VideoSink>(VideoSettings{
+        path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
+        settings.video_preset, settings.video_crf, plan.fps, settings.slow, settings.events,
+        shown_part(settings, plan.sensor), plan.questions.stopping, plan.questions.unread});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
@@ -67,8 +66,8 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
     stream.live = plan.live;
     stream.give_up = plan.questions.stopping;
+    stream.unread = plan.questions.unread;
     const std::string name = path == "-" ? "standard output" : path;
-    stream.reader_left = [name, outputs = plan.outputs] { return outputs->reader_left(name); };
     if (!plan.constant_rate && is_y4m(format))
         spdlog::warn(
             "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "
@@ -178,6 +177,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
     sheet.give_up = plan.questions.stopping;
+    sheet.unread = plan.questions.unread;
     sheet.truth_caption = plan.reference_caption;
     sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
     // Beside frames in colour, else in grey.
@@ -262,9 +262,6 @@ bool is_http(const std::string& sink) {
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
-    plan.outputs->expect(plan.data_outputs +
-                         std::size_t(std::ranges::count_if(
-                             settings.out, [](const auto& out) { return out != "null"; })));
     std::vector<std::unique_ptr<Sink>> plain, changed;
     AdjustSettings adjust = settings.adjust;
     adjust.unsharp = float(settings.unsharp);

@@ -1,13 +1,13 @@
 // SINK on the command line becomes a sink of frames.
 #pragma once
 
-#include "apps/cli/run/open_outputs.h"
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/calibration/undistortion.h"
 #include "pipeline/counters.h"
 #include "pipeline/sink.h"
 #include "pipeline/sinks/http/control.h"
+#include "src/io/output_file.h"
 
 #include <functional>
 #include <memory>
@@ -22,6 +22,7 @@ struct SinkQuestions {
     std::function<std::uint64_t()> lost;
     std::function<std::string()> run_json;
     std::function<bool()> stopping;
+    std::function<void(const std::string& name, PipeReader)> unread;  ///< as OutputOptions has it
     std::function<void(double)> speed_changed;
     // Any thread.
     std::function<Snapshot()> snapshot;
@@ -35,13 +36,10 @@ struct SinkPlan {
     double speed = 1;                                   ///< of the recording, for the window
     Size sensor;                                        ///< px
     bool live = false;                                  ///< the source is a camera
-    std::size_t data_outputs = 0;                       ///< of --record and --events-out
     std::optional<UndistortionPlan> undistortion = {};  ///< empty: not asked for
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;
-    /// All but `null`: counted by open_sinks().
-    std::shared_ptr<OpenOutputs> outputs = std::make_shared<OpenOutputs>();
     std::vector<HttpControl> controls = {};  ///< of the live page
 };
 

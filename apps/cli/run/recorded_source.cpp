@@ -23,12 +23,8 @@ const Format& format_of(const std::string& path) {
 }  // namespace
 
 RecordedSource::RecordedSource(Source& source, const std::string& path, ColourFilter colours,
-                               OutputOptions options, std::function<void()> reader_left)
-    : source_{source},
-      path_{path},
-      format_{format_of(path)},
-      data_{format_.holds, colours},
-      reader_left_{std::move(reader_left)} {
+                               OutputOptions options)
+    : source_{source}, path_{path}, format_{format_of(path)}, data_{format_.holds, colours} {
     options.appears = Appears::growing;
     StreamHeader header = header_of(source.info());
     header.format = format_.name;
@@ -57,8 +53,6 @@ void RecordedSource::write_batch() {
                      format_.title, text_of(data_.left_out()));
     if (!batch_.empty()) file_->write(batch_);
     batch_.clear();
-    if (file_->reader_gone())
-        if (const auto told = std::exchange(reader_left_, {})) told();
 }
 
 void RecordedSource::finish() {

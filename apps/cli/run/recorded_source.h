@@ -7,7 +7,6 @@
 #include "replay/written_data.h"
 #include "src/io/output_file.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,10 +19,9 @@ class RecordedSource : public Source {
 public:
     /// `source` is borrowed; `colours` is the filter before its sensor, none where it is not known.
     /// Throws Error (usage) for an extension that is no format and for a file
-    /// that exists, (failed) when it cannot be made. `reader_left` is called once, when the reader
-    /// of a pipe went away.
+    /// that exists, (failed) when it cannot be made.
     RecordedSource(Source& source, const std::string& path, ColourFilter colours,
-                   OutputOptions options, std::function<void()> reader_left = {});
+                   OutputOptions options);
     ~RecordedSource() override;
 
     const SensorInfo& info() const override { return source_.info(); }
@@ -48,8 +46,7 @@ private:
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
     Batch batch_;
-    bool told_ = false;                  // that something is left out
-    std::function<void()> reader_left_;  // empty: not asked for, or called
+    bool told_ = false;  // that something is left out
 };
 
 }  // namespace eventide::app

@@ -14,6 +14,8 @@
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <new>
@@ -24,11 +26,9 @@ namespace eventide::app {
 namespace {
 
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
-                                            ColourFilter colours, const OutputOptions& growing,
-                                            std::function<void()> reader_left) {
+                                            ColourFilter colours, const OutputOptions& growing) {
     if (settings.record.empty()) return nullptr;
-    return std::make_unique<RecordedSource>(source, settings.record, colours, growing,
-                                            std::move(reader_left));
+    return std::make_unique<RecordedSource>(source, settings.record, colours, growing);
 }
 
 SensorPixels size_of(const Source& source) {
@@ -39,8 +39,7 @@ SensorPixels size_of(const Source& source) {
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
                                          ColourFilter colours, EventsOut::Limit from,
                                          EventsOut::Limit to, EventFilter* filter,
-                                         const OutputOptions& growing,
-                                         std::function<void()> reader_left) {
+                                         const OutputOptions& growing) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -48,9 +47,9 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
     header.colour_filter = colours;
-    return std::make_unique<EventsOut>(
-        filter, open_event_target(settings.events_out, growing, header), std::move(from),
-        std::move(to), colours, std::move(reader_left));
+    return std::make_unique<EventsOut>(filter,
+                                       open_event_target(settings.events_out, growing, header),
+                                       std::move(from), std::move(to), colours);
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -75,6 +74,10 @@ Span span_in(const RunSettings& settings, const std::optional<StreamState>& resu
 std::unique_ptr<OutputFile> stats_of(const RunSettings& settings, OutputOptions options) {
     if (settings.stats.empty()) return nullptr;
     options.appears = Appears::whole;
+    // The run is worth more than its counters.
+    options.unread = [](const std::string& name, PipeReader why) {
+        spdlog::warn("--stats {}: {}", printable(name), text_of(why));
+    };
     return std::make_unique<OutputFile>(settings.stats == "-" ? "/dev/stderr" : settings.stats,
                                         std::move(options));
 }
@@ -87,6 +90,7 @@ Run::Run(Program& program, RunSettings& settings)
       speed_{speed_of(settings)},
       start_{manager_, settings.source},
       readers_{program.files.pipes()},
+      outputs_{count_outputs(settings)},
       opened_{open_source(settings, speed_, give_up_waiting())},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{filters_.behind(opened_.source->info())},
@@ -157,27 +161,28 @@ void Run::go_to_begin() {
     is_stream_ = format == nullptr || format->open_path == nullptr;
 }
 
-std::function<void()> Run::stop_without_reader_of(const std::string& output) {
-    return [this, &output] {
-        if (!outputs_->reader_left(output)) pipeline_->stop();
-    };
+/// A run that is stopped while its outputs are opened has no pipeline yet.
+void Run::end_without_outputs(const std::string& unread, PipeReader why) {
+    if (!outputs_.go_on_without(unread, why) && pipeline_) pipeline_->stop();
 }
 
 void Run::open_outputs() {
-    const OutputOptions growing{.overwrite = settings_.overwrite,
-                                .appears = Appears::growing,
-                                .give_up = [this] { return gives_up(); }};
+    const OutputOptions growing{
+        .overwrite = settings_.overwrite,
+        .appears = Appears::growing,
+        .give_up = [this] { return gives_up(); },
+        .unread = [this](const std::string& name,
+                         PipeReader why) { end_without_outputs(name, why); }};
     readers_.wait(growing.give_up);
-    sinks_ = open_sinks(settings_, sink_plan());
+    sinks_ = open_sinks(settings_, sink_plan(growing));
     // Behind them: other files may lie in a folder that a sink makes.
-    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing,
-                            stop_without_reader_of(settings_.record));
+    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
     const auto from = [this] {
         return pipeline_->clock_began_anew() ? std::nullopt : span_.frames_from;
     };
     events_out_ = events_out_of(
         settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
-        filter_.get(), growing, stop_without_reader_of(settings_.events_out));
+        filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) states_.emplace(settings_.states_out, settings_.overwrite);
     stats_ = stats_of(settings_, growing);

@@ -6,6 +6,7 @@
 #include "apps/cli/run/data_observers.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/loaded_model.h"
+#include "apps/cli/run/open_outputs.h"
 #include "apps/cli/run/open_sinks.h"
 #include "apps/cli/run/open_source.h"
 #include "apps/cli/run/quality/run_quality.h"
@@ -48,7 +49,7 @@ private:
     std::function<bool()> give_up_waiting();
     void go_to_begin();
     void open_outputs();
-    std::function<void()> stop_without_reader_of(const std::string& output);
+    void end_without_outputs(const std::string& unread, PipeReader why);
     void make_pipeline();
     int report(const RunProgress& end) const;
     Source& source();
@@ -58,7 +59,7 @@ private:
     double pace() const;
     RunQuality::Place quality_place() const;
     bool gives_up();
-    SinkPlan sink_plan();
+    SinkPlan sink_plan(const OutputOptions& growing);
     ModelRenderStage render_stage();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
@@ -80,7 +81,7 @@ private:
     const double speed_;
     StartWatch start_;   // until run()
     HeldPipes readers_;  // of outputs, until those are open
-    const std::shared_ptr<OpenOutputs> outputs_ = std::make_shared<OpenOutputs>();
+    OpenOutputs outputs_;
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;

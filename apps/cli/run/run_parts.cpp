@@ -39,7 +39,7 @@ bool Run::gives_up() {
     return program_.signals.stopping();
 }
 
-SinkPlan Run::sink_plan() {
+SinkPlan Run::sink_plan(const OutputOptions& growing) {
     SinkPlan plan;
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
     plan.rate = video_rate_of(settings_, slicer_);
@@ -47,13 +47,11 @@ SinkPlan Run::sink_plan() {
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
-    plan.outputs = outputs_;
-    plan.data_outputs =
-        std::size_t(!settings_.record.empty()) + std::size_t(!settings_.events_out.empty());
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
-    plan.questions.stopping = [this] { return gives_up(); };
+    plan.questions.stopping = growing.give_up;
+    plan.questions.unread = growing.unread;
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
     plan.questions.run_json = [this] { return run_json(); };
     if (opened_.paced != nullptr)

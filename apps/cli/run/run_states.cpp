@@ -56,8 +56,8 @@ void Run::keep_last_state() {
                     {.overwrite = settings_.overwrite, .give_up = [this] { return gives_up(); }}};
     file.write(format_safetensors(state_of(network_, colour_ ? &*colour_ : nullptr)));
     file.close();
-    if (file.reader_gone())
-        spdlog::warn("--state-out {}: its reader did not take all of it", settings_.state_out);
+    if (!file.is_read())
+        spdlog::warn("--state-out {}: {}", settings_.state_out, text_of(file.reader()));
 }
 
 }  // namespace eventide::app

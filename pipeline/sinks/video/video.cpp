@@ -18,8 +18,11 @@ namespace {
 std::unique_ptr<VideoFile> create(const std::filesystem::path& path,
                                   const VideoSettings& settings) {
     return std::make_unique<VideoFile>(
-        path, EncoderSettings{settings.preset, settings.crf, settings.fps, settings.overwrite,
-                              settings.give_up});
+        path, EncoderSettings{settings.preset, settings.crf, settings.fps,
+                              OutputOptions{.overwrite = settings.overwrite,
+                                            .appears = Appears::growing,
+                                            .give_up = settings.give_up,
+                                            .unread = settings.unread}});
 }
 
 }  // namespace
@@ -56,16 +59,12 @@ std::int64_t VideoSink::microseconds_to_show(SensorTime t) {
     return shown_us(t);
 }
 
-bool VideoSink::is_read() const {
+bool VideoSink::is_watched() const {
     return intensity_->is_read() || (sigma_ && sigma_->is_read());
 }
 
-void VideoSink::note_reader() {
-    if (auto reader_left = std::exchange(settings_.reader_left, {})) goes_on_ = reader_left();
-}
-
 void VideoSink::write(const Frame& frame) {
-    if (!is_read()) return note_reader();
+    if (!is_watched()) return;
     const std::int64_t t_us = microseconds_to_show(frame.t);
     draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
     if (settings_.events) draw_events_beside(frame, settings_.part, image_);
@@ -76,7 +75,6 @@ void VideoSink::write(const Frame& frame) {
         draw_sigma(frame, settings_.sigma_white, image_);
         sigma_->write(image_, t_us);
     }
-    if (!is_read()) note_reader();
 }
 
 void VideoSink::close() {

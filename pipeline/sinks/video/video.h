@@ -3,6 +3,7 @@
 
 #include "pipeline/sink.h"
 #include "pipeline/sinks/draw_frame.h"
+#include "src/io/output_file.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -30,9 +31,7 @@ struct VideoSettings {
     ShownPart part = {};  ///< that frames show
     /// Asked while a pipe waits for its reader: true gives up. May be empty.
     std::function<bool()> give_up = {};
-    /// Told once that the reader of a pipe went away. Whether the run goes on for others. May be
-    /// empty: it ends.
-    std::function<bool()> reader_left = {};
+    std::function<void(const std::string&, PipeReader)> unread = {};  ///< as OutputOptions has it
 };
 
 /// "libavcodec 59.37.100", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.
@@ -59,12 +58,9 @@ public:
     void write(const Frame& frame) override;
     /// A file without a frame would not be a video: it is not left behind.
     void close() override;
-    bool wants_more() const override { return is_read() || goes_on_; }
-    bool is_watched() const override { return is_read(); }
+    bool is_watched() const override;
 
 private:
-    bool is_read() const;
-    void note_reader();
     std::int64_t microseconds_to_show(SensorTime t);
 
     VideoSettings settings_;
@@ -73,7 +69,6 @@ private:
     SensorTime origin_{};  // shown at begin_us_
     std::int64_t begin_us_ = 0;
     std::optional<SensorTime> last_;  // of the frame before
-    bool goes_on_ = false;            // the reader went away, and others did not
 };
 
 }  // namespace eventide

@@ -126,9 +126,7 @@ VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
     if (is_h264(kind_))
         check(libav().av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
               "choosing x264's preset");
-    file_ = std::make_unique<OutputFile>(path_, OutputOptions{.overwrite = settings_.overwrite,
-                                                              .appears = Appears::growing,
-                                                              .give_up = settings_.give_up});
+    file_ = std::make_unique<OutputFile>(path_, settings_.output);
     const auto buffer = static_cast<unsigned char*>(libav().av_malloc(kBufferBytes));
     bytes_.reset(libav().avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr,
 #if LIBAVFORMAT_VERSION_MAJOR >= 61

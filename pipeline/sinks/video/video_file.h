@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,8 +27,7 @@ struct EncoderSettings {
     std::string preset;
     int crf = 18;
     double fps = 30;  ///< nominal, for the last frame's length
-    bool overwrite = false;
-    std::function<bool()> give_up = {};  ///< as OutputOptions has it
+    OutputOptions output = {.appears = Appears::growing};
 };
 
 /// Times are rounded to what the kind of file knows; a frame that would fall on the one before
@@ -48,8 +46,7 @@ public:
     /// that failed it only closes.
     void finish();
 
-    /// False once the reader of a pipe went away: what is written goes nowhere.
-    bool is_read() const { return !file_->reader_gone(); }
+    bool is_read() const { return file_->is_read(); }  ///< as OutputFile has it
 
 private:
     void open_encoder(const cv::Mat& image);

@@ -38,10 +38,14 @@ TEST(ContactSheet, APipeThatNobodyReadsIsGivenUp) {
     const std::string pipe = temp / "sheet.png";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     int asked = 0;
-    ContactSheetSink sink{{.path = pipe, .give_up = [&] { return ++asked == 2; }}};
+    PipeReader why = PipeReader::takes;
+    ContactSheetSink sink{{.path = pipe,
+                           .give_up = [&] { return ++asked == 2; },
+                           .unread = [&](const std::string&, PipeReader told) { why = told; }}};
     sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
     sink.close();
     EXPECT_EQ(asked, 2);
+    EXPECT_EQ(why, PipeReader::never_came);
 }
 
 TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {

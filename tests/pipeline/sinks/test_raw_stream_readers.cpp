@@ -18,52 +18,32 @@ namespace {
 
 using test::TempFolder;
 
-TEST(StreamSink, AReaderThatGoesAwayEndsTheRunAndIsNoError) {
+TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndIsNoError) {
     signal(SIGPIPE, SIG_IGN);
     const TempFolder temp;
     const std::string pipe = temp / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
-    StreamSink sink{{.path = pipe, .format = StreamFormat::gray8}};
+    int told = 0;
+    std::uint64_t missing = 0;
+    StreamSink sink{{.path = pipe,
+                     .format = StreamFormat::gray8,
+                     .overload = Overload::repeat,
+                     .unread =
+                         [&](const std::string& name, PipeReader why) {
+                             ++told;
+                             EXPECT_EQ(name, pipe);
+                             EXPECT_EQ(why, PipeReader::left);
+                         },
+                     .shorter_by = [&](std::uint64_t n) { missing += n; }}};
     sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
-    EXPECT_TRUE(sink.wants_more());
+    EXPECT_TRUE(sink.is_watched());
     close(reader);
-    sink.write(test::ramp_frame(8, 8, 1, from_us(1)));
-    EXPECT_FALSE(sink.wants_more());
-    sink.write(test::ramp_frame(8, 8, 2, from_us(2)));
+    for (int i = 1; i < 4; ++i) sink.write(test::ramp_frame(8, 8, 2 * i, from_us(2 * i)));
+    EXPECT_EQ(told, 1);
+    EXPECT_FALSE(sink.is_watched());
     sink.close();
-}
-
-TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
-    signal(SIGPIPE, SIG_IGN);
-    const TempFolder temp;
-    const std::string pipe = temp / "pipe";
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    for (const bool others : {true, false}) {
-        const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
-        int told = 0;
-        std::uint64_t missing = 0;
-        StreamSink sink{{.path = pipe,
-                         .format = StreamFormat::gray8,
-                         .overload = Overload::repeat,
-                         .reader_left =
-                             [&] {
-                                 ++told;
-                                 return others;
-                             },
-                         .shorter_by = [&](std::uint64_t n) { missing += n; }}};
-        sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
-        EXPECT_TRUE(sink.is_watched());
-        close(reader);
-        for (int i = 1; i < 4; ++i) {
-            sink.write(test::ramp_frame(8, 8, i, from_us(i)));
-            EXPECT_EQ(sink.wants_more(), others) << "asked after each frame";
-        }
-        EXPECT_EQ(told, 1);
-        EXPECT_FALSE(sink.is_watched());
-        sink.close();
-        EXPECT_EQ(missing, 0U) << "who went away was not too slow";
-    }
+    EXPECT_EQ(missing, 0U) << "who went away was not too slow";
 }
 
 TEST(StreamSink, APipeOfALiveSourceHoldsAboutAFrame) {
@@ -86,7 +66,7 @@ TEST(StreamSink, ANamedPipeWaitsForItsReaderOrGivesUp) {
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     int asked = 0;
     StreamSink gave_up{{.path = pipe, .give_up = [&] { return ++asked == 2; }}};
-    EXPECT_FALSE(gave_up.wants_more());
+    EXPECT_FALSE(gave_up.is_watched());
 
     std::string got;
     std::jthread reader{[&] { got = test::read_text(pipe); }};

@@ -5,7 +5,6 @@
 #include "src/binning/noise_filter.h"
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
-#include "src/io/output_file.h"
 
 #include <cstdio>
 #include <vector>
@@ -46,7 +45,6 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number) 
 
 StateFolder::StateFolder(const std::string& folder, bool overwrite)
     : folder_{folder}, overwrite_{overwrite} {
-    create_folder(folder_);
     lock_.take(folder_);
     if (overwrite_) earlier_states(folder_);  // or a refusal
 }
