@@ -44,7 +44,6 @@ EventPacketParser::EventPacketParser(EventPacketEncoding encoding, int width, in
       evt3_(width, height) {}
 
 void EventPacketParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    for (const Event& event : std::exchange(before_gap_.events, {})) into.events.push_back(event);
     while (!bytes.empty()) {
         std::size_t taken = 0;
         if (rest_ == 0) {
@@ -231,13 +230,18 @@ void EventPacketParser::pass_evt3(Batch& into) {
 
 void EventPacketParser::begin_anew_after_gap(std::int64_t t_us, Batch& into) {
     if (!std::exchange(after_gap_, false) || t_us >= last_event_us_) return;
+    validator_.finish(into, damage_);
+    validator_.resync(damage_);
     into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
     newest_us_ = last_event_us_ = t_us;
 }
 
 void EventPacketParser::take_event(std::int64_t t_us, unsigned x, unsigned y, bool on,
                                    Batch& into) {
-    if (validator_.is_inside(x, y)) begin_anew_after_gap(t_us, into);
+    if (validator_.is_inside(x, y)) {
+        begin_anew_after_gap(t_us, into);
+        if (!validator_.newest_us()) validator_.pass(t_us);  // a camera's first event need not wait
+    }
     validator_.add(t_us, x, y, on, into, damage_);
     note_newest();
 }
@@ -261,9 +265,6 @@ void EventPacketParser::finish(Batch& into) {
 
 void EventPacketParser::resync() {
     drop();
-    validator_.finish(before_gap_, damage_);
-    note_newest();
-    validator_.resync(damage_);
     evt3_.resync();
     evt3_.parse({}, evt3_batch_);  // events of a packet whose rest is lost go with it
     evt3_batch_.clear();

@@ -100,7 +100,6 @@ private:
     Evt3Parser evt3_;
     Damage evt3_damage_;  ///< of evt3_, what is in damage_ already
     Batch evt3_batch_;    ///< of this packet, in the sensor's time
-    Batch before_gap_;    ///< comes out with the next call
 
     // Of this packet.
     std::int64_t base_ns_ = 0, stamp_us_ = 0;
