@@ -219,11 +219,21 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
     packet_.clear();
     append_event_packet(header, payload, packet_);
     packets_->parse(packet_, into);
+    count_damage_of_packets(damage);
+    return true;
+}
+
+void RosData::count_damage_of_packets(Damage& damage) {
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         damage.count(DamageReason(i),
                      packets_->damaged()[DamageReason(i)] - packet_damage_[DamageReason(i)]);
     packet_damage_ = packets_->damaged();
-    return true;
+}
+
+void RosData::finish(Batch& into, Damage& damage) {
+    if (!packets_) return;
+    packets_->finish(into);
+    count_damage_of_packets(damage);
 }
 
 /// Who records may lose messages. Not all drivers count: the same number once more is no gap.

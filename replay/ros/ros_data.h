@@ -53,6 +53,9 @@ public:
     /// EventPacketParser does.
     bool take(RosForm form, std::span<const std::byte> message, Batch& into, Damage& damage);
 
+    /// There are no more: appends what waited for one that could contradict it.
+    void finish(Batch& into, Damage& damage);
+
     /// px, as the messages with events say; 0 before the first.
     int width() const { return width_; }
     int height() const { return height_; }
@@ -71,6 +74,7 @@ private:
     bool take_image(Reader& reader, Batch& into);
     bool take_size(std::uint32_t width, std::uint32_t height);
     bool is_gap_before(std::uint64_t sequence);
+    void count_damage_of_packets(Damage& damage);
 
     int width_ = 0, height_ = 0;
     std::optional<EventPacketParser> packets_;

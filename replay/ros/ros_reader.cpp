@@ -89,7 +89,10 @@ bool RosReader::has_size_of_events(const Topic& topic) const {
 
 bool RosReader::read(Batch& into, Damage& damage) {
     while (messages_.empty()) {
-        if (ended_) return false;
+        if (ended_) {
+            data_.finish(into, damage);
+            return false;
+        }
         ended_ = !read_part(damage);
     }
     const Message message = std::move(messages_.front());

@@ -39,8 +39,8 @@ void append_event_packet(const EventPacketHeader& header, std::span<const std::b
 
 EventPacketParser::EventPacketParser(EventPacketEncoding encoding, int width, int height)
     : encoding_(encoding),
-      width_(unsigned(width)),
-      height_(unsigned(height)),
+      validator_(std::uint64_t(width), std::uint64_t(height),
+                 EventValidator::LeapEnds::with_next_packet),
       evt3_(width, height) {}
 
 void EventPacketParser::parse(std::span<const std::byte> bytes, Batch& into) {
@@ -99,6 +99,7 @@ void EventPacketParser::end_packet(Batch& into) {
     if (words_.is_half_read() || events_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
     events_.drop();
+    validator_.end_packet();
 }
 
 void EventPacketParser::take_payload(std::span<const std::byte> bytes, Batch& into) {
@@ -213,7 +214,7 @@ void EventPacketParser::pass_evt3(Batch& into) {
     if (!triggers.empty()) first = std::min(first, triggers.front().t);
     shift_to_stamp(to_us(first));
     const SensorDuration shift{*shift_us_};
-    move_time(to_us(first + shift), into);
+    begin_anew_after_gap(to_us(first + shift), into);
     for (Event event : events) {
         event.t += shift;
         into.events.push_back(event);
@@ -227,23 +228,28 @@ void EventPacketParser::pass_evt3(Batch& into) {
     evt3_batch_.clear();
 }
 
-/// False for a time that goes back within the stream.
-bool EventPacketParser::move_time(std::int64_t t_us, Batch& into) {
-    if (std::exchange(after_gap_, false) && t_us < last_event_us_) {
-        into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
-        newest_us_ = last_event_us_ = t_us;
-    }
-    if (t_us < last_event_us_) return false;
-    newest_us_ = std::max(newest_us_, t_us);
-    return true;
+void EventPacketParser::begin_anew_after_gap(std::int64_t t_us, Batch& into) {
+    if (!std::exchange(after_gap_, false) || t_us >= last_event_us_) return;
+    validator_.finish(into, damage_);
+    validator_.resync(damage_);
+    into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
+    newest_us_ = last_event_us_ = t_us;
 }
 
 void EventPacketParser::take_event(std::int64_t t_us, unsigned x, unsigned y, bool on,
                                    Batch& into) {
-    if (x >= width_ || y >= height_) return damage_.count(DamageReason::out_of_range);
-    if (!move_time(t_us, into)) return damage_.count(DamageReason::time_backwards);
-    last_event_us_ = t_us;
-    into.events.push_back({from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)});
+    if (validator_.is_inside(x, y)) {
+        begin_anew_after_gap(t_us, into);
+        if (!validator_.newest_us()) validator_.pass(t_us);  // a camera's first event need not wait
+    }
+    validator_.add(t_us, x, y, on, into, damage_);
+    note_newest();
+}
+
+void EventPacketParser::note_newest() {
+    if (!validator_.newest_us()) return;
+    last_event_us_ = *validator_.newest_us();
+    newest_us_ = std::max(newest_us_, last_event_us_);
 }
 
 void EventPacketParser::finish(Batch& into) {
@@ -252,6 +258,8 @@ void EventPacketParser::finish(Batch& into) {
         evt3_.finish(evt3_batch_);
         pass_evt3(into);
     }
+    validator_.finish(into, damage_);
+    note_newest();
     drop();
 }
 

@@ -1,6 +1,7 @@
 // event_camera_msgs/EventPacket of ROS drivers, in its four encodings.
 #pragma once
 
+#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/codec/whole_words.h"
@@ -48,7 +49,8 @@ void append_event_packet(const EventPacketHeader& header, std::span<const std::b
 /// All times are ROS's. libcaer's time bases are; sensor times of the others are shifted so that
 /// the first event is at its message's stamp. After a gap a shift is set anew only where it is more
 /// than kMaxShift off: then the camera, or its driver, has begun anew. Where that sets the time
-/// back, a Trigger of kind timestamp_reset says so.
+/// back, a Trigger of kind timestamp_reset says so. A time that leaps is believed when the next
+/// packet does not lie before it.
 class EventPacketParser final : public Parser {
 public:
     static constexpr SensorDuration kMaxShift{1'000'000};
@@ -77,13 +79,14 @@ private:
     void take_rows(unsigned mask, unsigned y, bool on, Batch& into);
     void pass_evt3(Batch& into);
     void shift_to_stamp(std::int64_t t_us);
-    bool move_time(std::int64_t t_us, Batch& into);
+    void begin_anew_after_gap(std::int64_t t_us, Batch& into);
+    void note_newest();
     void take_event(std::int64_t t_us, unsigned x, unsigned y, bool on, Batch& into);
 
     static constexpr unsigned kNowhere = 1U << 16;
 
     EventPacketEncoding encoding_;
-    unsigned width_, height_;
+    EventValidator validator_;  ///< of all but EVT3, which has its own rules
     Damage damage_;
     std::array<std::byte, EventPacketHeader::kBytes> header_{};
     std::size_t header_bytes_ = 0;  ///< read of the next one

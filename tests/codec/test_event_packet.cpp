@@ -60,6 +60,31 @@ TEST(EventPacket, MonoHasPlacesOfFifteenAndSixteenBits) {
     EXPECT_THAT(parsed.data.events, ElementsAre(at(kStampUs, 65534, 32767, false)));
 }
 
+TEST(EventPacket, AFlippedBitInATimeCostsOnlyTheEventsOfThatTime) {
+    const auto of = [](std::int64_t ms, std::int32_t flipped) {
+        return packet({std::uint64_t(kStamp + ms * 1'000'000), 0},
+                      libcaer_event(1, 2, true, 5) + libcaer_event(3, 4, true, 7 ^ flipped) +
+                          libcaer_event(5, 6, true, 9));
+    };
+    const auto make = parser_of(EventPacketEncoding::libcaer);
+    for (const std::int32_t bit : {1 << 17, 1 << 28, 1 << 30}) {
+        const Bytes stream = of(0, 0) + of(10, bit) + of(20, 0);
+        const Parsed parsed = parse_whole(make, stream);
+        EXPECT_EQ(parsed.data.events.size(), 8U) << bit;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U) << bit;
+        EXPECT_EQ(parsed.damage.total(), 1U) << bit;
+        expect_same_for_any_split(make, stream);
+    }
+    constexpr std::int64_t kFarMs = std::int64_t{1} << 30;
+    const Bytes stream = of(0, 0) + of(kFarMs, 0) + of(20, 0);
+    const Parsed whole_packet = parse_whole(make, stream);
+    EXPECT_EQ(whole_packet.data.events.size(), 6U);
+    EXPECT_EQ(whole_packet.damage[DamageReason::bad_record], 3U);
+    const Parsed silence = parse_whole(make, of(0, 0) + of(kFarMs, 0) + of(kFarMs + 10, 0));
+    EXPECT_EQ(silence.data.events.size(), 9U);
+    EXPECT_EQ(silence.damage.total(), 0U);
+}
+
 TEST(EventPacket, AHeaderThatCannotBeIsDamageAndTheNextIsFound) {
     const Bytes good = packet({kStamp, 0}, libcaer_event(1, 2, true, 9));
     for (const std::size_t field : {4U, 8U, 16U}) {  // length, time base, stamp

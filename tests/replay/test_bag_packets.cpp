@@ -86,6 +86,22 @@ TEST(BagPackets, BehindALostMessageEvt3WaitsForItsNextTimeAndRow) {
     }
 }
 
+/// Nothing contradicts their time any more.
+TEST(BagPackets, EventsBehindASilenceThatAreTheLastOnesAreThere) {
+    const TestFolder folder;
+    auto events = some_events(200, 1'500'000'000);
+    for (std::size_t i = 100; i < events.size(); ++i) events[i].t += SensorDuration{10'000'000};
+    BagBytes messages;
+    for (std::size_t i = 0; i < events.size(); i += 100)
+        messages += packet_message("mono", i / 100, events[i].t,
+                                   mono(events[i].t, std::span(events).subspan(i, 100)));
+    const auto recording = open_recording(folder.write("a.bag", bag_of(messages)));
+    for (int reading = 0; reading < 2; ++reading) {
+        EXPECT_TRUE(read_everything(*recording).events == events);
+        recording->seek(SensorTime::min());
+    }
+}
+
 TEST(BagPackets, ADriverThatDoesNotCountHasNoGaps) {
     const TestFolder folder;
     const auto events = some_events(300, 1'500'000'000);
