@@ -1,6 +1,7 @@
 // The EVREAL protocol (Ercan et al. 2023; docs/accuracy.md, "Protocols").
 #include "apps/evaluate/evaluate_recordings.h"
 #include "apps/evaluate/evreal_sequence.h"
+#include "apps/evaluate/seconds.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -68,7 +69,7 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
         ScoredImages which;
         // EVREAL's loader never takes a recording's last image.
         if (!cut && sequence.images.size() > 1) which.to = sequence.images.rbegin()[1].t;
-        if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
+        if (cut) which.from = sequence.first + duration_from_seconds(cut->from_s);
         SequenceResult result =
             evaluate_sequence(evaluation, std::move(sequence), "reference", which);
         if (std::string note = cut ? shorter_than_cut(*cut, result.report) : ""; !note.empty())

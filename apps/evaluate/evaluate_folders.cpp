@@ -2,6 +2,7 @@
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/reference_sequence.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/io/image_codecs.h"
 
 #include <algorithm>
@@ -79,11 +80,14 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
         if (!images.empty() || !truths.empty())
             report.sequences.push_back(compare(name.string(), images, truths, judge));
     }
-    if (const auto images = images_in(frames); !images.empty())
-        report.sequences.push_back(
-            compare(sequence_name(frames), images, images_in(references), judge));
+    const auto images = images_in(frames), truths = images_in(references);
+    if (!images.empty())
+        report.sequences.push_back(compare(sequence_name(frames), images, truths, judge));
     if (report.sequences.empty())
         throw Error(ErrorKind::input, frames.string() + ": expected images, found none");
+    if (warn && images.empty() && !truths.empty())
+        warn(references.string() + ": " + counted(truths.size(), "image") +
+             " beside its folders left out, as " + frames.string() + " has folders alone");
     report.overall = overall_scores(report.sequences);
     return report;
 }

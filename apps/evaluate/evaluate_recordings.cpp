@@ -1,6 +1,7 @@
 // Real recordings: the model's image at each reference image's time against that image.
 #include "apps/evaluate/evaluate_recordings.h"
 
+#include "apps/evaluate/seconds.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/damage_text.h"
 #include "src/core/error.h"
@@ -139,8 +140,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         which.skip = what.skip_images == RecordingSettings::kSkipHalf
                          ? images / 2
                          : std::max(0, std::min(what.skip_images, images - 1));
-        if (what.from_s)
-            which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
+        if (what.from_s) which.from = sequence.first + duration_from_seconds(*what.from_s);
         require_scored(sequence, which);
         const std::string name = sequence.name;
         SequenceResult result = evaluate_sequence(evaluation, std::move(sequence), window, which);

@@ -1,6 +1,7 @@
 // Reading a recording into memory, and cutting it.
 #include "apps/evaluate/reference_sequence.h"
 
+#include "apps/evaluate/seconds.h"
 #include "pipeline/demosaiced.h"
 #include "pipeline/stages.h"
 #include "replay/formats.h"
@@ -15,16 +16,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <system_error>
 #include <utility>
 
 namespace eventide {
 namespace {
-
-SensorDuration seconds(double s) {
-    return SensorDuration{std::int64_t(std::llround(s * 1e6))};
-}
 
 /// What one clock tells; members as ReferenceSequence has them.
 struct Part {
@@ -75,8 +71,8 @@ private:
     void begin_at(SensorTime first) {
         begun_ = true;
         part_.first = first;
-        if (from_s_) from_ = first + seconds(*from_s_);
-        if (to_s_) to_ = first + seconds(*to_s_);
+        if (from_s_) from_ = first + duration_from_seconds(*from_s_);
+        if (to_s_) to_ = first + duration_from_seconds(*to_s_);
     }
     /// The images of a piece came before its events.
     void take_piece(Batch& piece) {

@@ -8,11 +8,16 @@
 
 namespace eventide {
 
+/// To the nearest microsecond.
+inline SensorDuration duration_from_seconds(double seconds) {
+    return SensorDuration{std::llround(seconds * 1e6)};
+}
+
 /// Empty for what is no time: not a number, or farther away than 30,000 years.
 inline std::optional<SensorTime> time_from_seconds(double seconds) {
     constexpr double kFarthestSeconds = 1e12;  // in microseconds it fits 64 bits
     if (!(std::abs(seconds) <= kFarthestSeconds)) return std::nullopt;
-    return from_us(std::llround(seconds * 1e6));
+    return SensorTime{duration_from_seconds(seconds)};
 }
 
 }  // namespace eventide

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -33,7 +34,7 @@ Columns read_csv(const std::filesystem::path& path) {
         const std::vector<std::string> values = cells(line);
         if (values.size() != names.size()) continue;  // a line cut short by a crash
         for (std::size_t i = 0; i < names.size(); ++i)
-            columns[names[i]].push_back(number_in<double>(values[i]).value_or(0));
+            columns[names[i]].push_back(number_in<double>(values[i]).value_or(NAN));
     }
     return columns;
 }
@@ -45,6 +46,7 @@ struct Bounds {
     double low = 1e30, high = -1e30;
     void cover(const std::vector<double>& values, std::size_t from = 0) {
         for (std::size_t i = from; i < values.size(); ++i) {
+            if (!std::isfinite(values[i])) continue;
             low = std::min(low, values[i]);
             high = std::max(high, values[i]);
         }
@@ -81,9 +83,11 @@ private:
         if (columns.count(name_) == 0) return;
         out << "<polyline fill='none' " << style << " points='";
         const auto &x = columns.at("minutes"), &y = columns.at(name_);
-        for (std::size_t i = 0; i < y.size(); ++i)
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            if (!std::isfinite(y[i])) continue;  // a step that was skipped
             out << x0_ + kWidth * x_.place(x[i]) << ","
                 << y0_ + kHeight * (1 - std::clamp(y_.place(y[i]), 0.0, 1.0)) << " ";
+        }
         out << "'/>\n";
     }
     std::string name_;

@@ -107,6 +107,8 @@ TEST(SensorPart, MayBeDarkOrBrightWhereAWholeSensorNeverIs) {
     };
     EXPECT_LT(furthest(SensorPart::all(kPart.width, kPart.height)), .1);
     EXPECT_GT(furthest(kPart), .15);
+    EXPECT_GT(furthest({24, kHeight, 60, 0, kWidth, kHeight}), .07) << "of all rows";
+    EXPECT_GT(furthest({kWidth, 18, 0, 50, kWidth, kHeight}), .07) << "of all columns";
 }
 
 TEST(SensorPart, OutsideTheWholeIsRefused) {

@@ -88,6 +88,23 @@ TEST(SimulatedStream, TruthDoesNotDependOnWhenItIsAskedFor) {
     }
 }
 
+/// What moves is known some way ahead, and goes on from there as it was then.
+TEST(SimulatedStream, TruthOfNowStaysTrue) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        SimulatedStream stream = wide(seed);
+        std::vector<Event> events;
+        Array2<float> now(kHeight, kWidth), later(kHeight, kWidth);
+        for (int ms = 10; ms <= 1500; ms += 10) {
+            const SensorTime t = stream.now();
+            stream.truth(t, now);
+            events.clear();
+            stream.advance(from_us(1000 * ms), events);
+            stream.truth(t, later);
+            ASSERT_EQ(now, later) << seed << ' ' << ms;
+        }
+    }
+}
+
 TEST(SimulatedStream, TruthIsAlignedAtTheCornersAtEverySize) {
     SceneSettings scene;
     scene.objects_max = 0;

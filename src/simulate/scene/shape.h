@@ -9,8 +9,8 @@
 
 namespace eventide {
 
-/// Lives in [-1, 1]^2 and touches its edges. A disc, a ring (a disc with a hole) or a convex
-/// polygon around the origin.
+/// Within [-1, 1]^2: its circle as a disc, a ring (a disc with a hole) or a convex polygon with its
+/// corners on that, or all of it, a rectangle.
 struct Shape {
     struct Side {
         double nx = 0, ny = 0, distance = 0;  ///< inside: nx x + ny y < distance

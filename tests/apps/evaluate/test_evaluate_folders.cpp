@@ -55,6 +55,11 @@ TEST(EvaluateFolders, LeaveOutNoSequenceInSilence) {
     EXPECT_EQ(warnings, std::vector<std::string>{(folder / "references/two").string() +
                                                  ": is left out, as there is no folder " +
                                                  (folder / "frames/two").string()});
+    write_image(folder / "references/0.png", test_image(kHeight, kWidth, 0));
+    EXPECT_EQ(evaluate().overall.frames, 1);
+    EXPECT_EQ(warnings.back(), (folder / "references").string() +
+                                   ": 1 image beside its folders left out, as " +
+                                   (folder / "frames").string() + " has folders alone");
     fs::create_directory(folder / "frames/two");
     EXPECT_EQ(error_of(evaluate, ErrorKind::input),
               "two: expected as many images as references, found 0 and 1");

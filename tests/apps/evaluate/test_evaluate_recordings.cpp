@@ -78,6 +78,18 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
     }
 }
 
+TEST(EvaluateRecordings, ScoreFromTheMicrosecondAskedForOn) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("from"), .9, .001, .25)};
+    what.skip_images = 0;
+    const auto frames_from = [&](double from_s) {
+        what.from_s = from_s;  // which no binary fraction is
+        return evaluate_recordings(what, small_model()).overall.frames;
+    };
+    EXPECT_EQ(frames_from(.25), 3);
+    EXPECT_EQ(frames_from(.250001), 2);
+}
+
 TEST(EvaluateRecordings, CompareImagesThatCameAfterTheLastEvent) {
     const fs::path folder = write_recording(fresh_folder("after_events"), .9, .001, .1);
     {

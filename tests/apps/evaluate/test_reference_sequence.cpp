@@ -188,6 +188,18 @@ TEST(ReferenceWindows, OfAnImageThatIsStoredTwiceAreOne) {
     EXPECT_EQ(ends, (std::vector{from_us(10), from_us(30)}));
 }
 
+TEST(ReferenceWindows, EndAfterTheyBeginAlsoWhereTheTimesOfImagesDoNotAscend) {
+    ReferenceSequence sequence;
+    for (const int t : {10, 30, 20}) sequence.images.emplace_back().t = from_us(t);
+    for (const int t : {15, 25}) sequence.events.push_back({from_us(t), 0, 0, Polarity::on});
+    int windows = 0;
+    for_each_reference_window(sequence, [&](const EventWindow& event_window) {
+        ++windows;
+        EXPECT_LE(event_window.events.size(), sequence.events.size());
+    });
+    EXPECT_EQ(windows, 2);
+}
+
 /// Events of one pixel each millisecond for 100 ms; images at 40, 75 and 130 ms.
 ReferenceSequence short_sequence() {
     ReferenceSequence sequence{"short", 8, 8, {}, {}, {}, {}, {}};
