@@ -191,6 +191,37 @@ class Interrupts(RecordedTest):
             pipeline = eventide.Pipeline(camera, lambda frame: None, "small", window="10ms", sequential=sequential)
             self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
 
+    def test_no_sink_is_called_any_more(self):
+        interrupted, late = [], []
+
+        def interrupt(*_):
+            interrupted.append(True)
+            raise KeyboardInterrupt
+
+        self.handle(interrupt)
+        camera = eventide.open_camera(ENDLESS_CAMERA)
+        pipeline = eventide.Pipeline(camera, lambda frame: late.extend(interrupted), "small", window="10ms")
+        self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
+        self.assertEqual(late, [])
+
+    def test_an_interruption_comes_before_what_its_source_raises_then(self):
+        waits, stopped = threading.Event(), threading.Event()
+
+        class Unplugged:
+            width, height = 64, 48
+
+            def __iter__(self):
+                waits.set()
+                stopped.wait()
+                raise OSError("cable")
+                yield
+
+            def stop(self):
+                stopped.set()
+
+        pipeline = eventide.Pipeline(Unplugged(), [], "small")
+        self.interrupt(pipeline.run, waits.is_set)
+
     def test_a_pipeline_ends_that_calls_no_sink(self):
         def nothing():
             while True:

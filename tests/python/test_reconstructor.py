@@ -64,7 +64,10 @@ class Frames(RecordedTest):
             corrected.append(intensity)
             self.assertEqual(reconstructor.counters["used_images"], 1)
         np.testing.assert_array_equal(corrected[0], corrected[1])
-        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2), still[:0], still[:, :0]):
+        widest = np.zeros((1, 4096), np.uint8)
+        reconstructor.push_image(70_000, widest)
+        wider, pairs = np.zeros((1, 4097), np.uint8), np.stack(2 * [still], axis=2)
+        for image in (still.astype(np.float32), still[0], pairs, still[:0], still[:, :0], wider):
             with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
                 reconstructor.push_image(70_000, image)
         with self.assertRaisesRegex(eventide.UsageError, "exposure_end not before exposure_begin, found 60000 us"):
