@@ -81,7 +81,7 @@ private:
 };
 
 /// Asks the iterator on a thread of its own, where `aside`: one that waits for ever is left behind
-/// then. Without, run() reads on Python's main thread, and a signal ends that wait.
+/// then. Without, run() reads on Python's main thread, where signals are heard.
 class IteratedSource final : public RunSource {
 public:
     IteratedSource(const py::object& source, int width, int height, bool aside)
@@ -116,9 +116,10 @@ public:
         gap_before_ = false;
         const auto answer = std::make_shared<Answer>();
         const auto ask = [iteration = iteration_, answer] { *answer = iteration->next(); };
-        if (!aside_)
+        if (!aside_) {
+            hear_signals();
             ask();
-        else if (!aside_->run(ask)) {
+        } else if (!aside_->run(ask)) {
             iteration_->give_up();
             return false;
         }

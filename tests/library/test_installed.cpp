@@ -22,6 +22,12 @@ TEST_F(Installed, HeadersCompileAloneAndWithEveryWarning) {
     }
 }
 
+TEST_F(Installed, HeaderOfCIsC99) {
+    write_text(temp_ / "alone.c", "#include <eventide/eventide.h>\nint main(void) { return 0; }\n");
+    succeed({"cc", "-std=c99", "-pedantic", "-fsyntax-only", "-Wall", "-Wextra",
+             "-Wstrict-prototypes", "-Werror", "-I", prefix() + "/include", temp_ / "alone.c"});
+}
+
 TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
     std::size_t models = 0;
     for (const auto& entry :

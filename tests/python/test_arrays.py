@@ -60,7 +60,7 @@ class Arrays(RecordedTest):
     def test_what_makes_no_sense_is_counted(self):
         events = np.zeros(5, [("t", "<i8"), ("x", "<i4"), ("y", "<i4"), ("p", "?")])
         events["t"] = [10, 20, 15, 30, 2**62]
-        events["x"] = [0, -1, 0, 65536 + 3, 0]
+        events["x"] = [0, 3 - 65536, 0, 65536 + 3, 0]
         reconstructor = self.reconstructor()
         reconstructor.push(events)
         reconstructor.push(events[:0])

@@ -5,6 +5,7 @@ import contextlib
 import errno
 import fcntl
 import functools
+import itertools
 import operator
 import os
 import signal
@@ -191,14 +192,44 @@ class Interrupts(RecordedTest):
             pipeline = eventide.Pipeline(camera, lambda frame: None, "small", window="10ms", sequential=sequential)
             self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
 
-    def test_a_pipeline_ends_that_calls_no_sink(self):
-        def nothing():
-            while True:
-                yield np.zeros(0, DTYPE)
+    def test_no_sink_is_called_any_more(self):
+        interrupted, late = [], []
 
-        for source in (nothing(), eventide.open_camera(ENDLESS_CAMERA)):
-            pipeline = eventide.Pipeline(source, [], "small", width=64, height=48)
-            self.interrupt(pipeline.run, lambda: pipeline.counters["batches"] > 3)
+        def interrupt(*_):
+            interrupted.append(True)
+            raise KeyboardInterrupt
+
+        self.handle(interrupt)
+        camera = eventide.open_camera(ENDLESS_CAMERA)
+        pipeline = eventide.Pipeline(camera, lambda frame: late.extend(interrupted), "small", window="10ms")
+        self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
+        self.assertEqual(late, [])
+
+    def test_an_interruption_comes_before_what_its_source_raises_then(self):
+        waits, stopped = threading.Event(), threading.Event()
+
+        class Unplugged:
+            width, height = 64, 48
+
+            def __iter__(self):
+                waits.set()
+                stopped.wait()
+                raise OSError("cable")
+                yield
+
+            def stop(self):
+                stopped.set()
+
+        pipeline = eventide.Pipeline(Unplugged(), [], "small")
+        self.interrupt(pipeline.run, waits.is_set)
+
+    def test_a_pipeline_ends_in_which_no_line_of_python_runs(self):
+        for sequential in (False, True):
+            for sinks in ([], collections.deque(maxlen=1).append):
+                for source in (itertools.repeat(np.zeros(0, DTYPE)), eventide.open_camera(ENDLESS_CAMERA)):
+                    with self.subTest((sequential, sinks, source)):
+                        pipeline = eventide.Pipeline(source, sinks, "small", width=64, height=48, sequential=sequential)
+                        self.interrupt(pipeline.run, lambda: pipeline.counters["batches"] > 3)
 
     def test_a_pipeline_ends_whose_source_waits_for_what_never_comes(self):
         waits, comes = threading.Event(), threading.Event()

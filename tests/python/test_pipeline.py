@@ -50,6 +50,10 @@ class Pipelines(RecordedTest):
         parts = (events[i : i + 777] for i in range(0, len(events), 777))
         np.testing.assert_array_equal(self.frames_of(parts, width=64, height=48), expected)
 
+    def test_a_size_that_is_given_is_that_of_the_sensor(self):
+        for source in (eventide.open(self.recording), Wrapped(eventide.open(self.recording))):
+            self.assertEqual(self.frames_of(source, width=100, height=80).shape[2:], (80, 100))
+
     def frames_one_by_one(self, source, **more):
         reconstructor = self.reconstructor(**more)
         frames = []

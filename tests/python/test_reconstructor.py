@@ -64,7 +64,10 @@ class Frames(RecordedTest):
             corrected.append(intensity)
             self.assertEqual(reconstructor.counters["used_images"], 1)
         np.testing.assert_array_equal(corrected[0], corrected[1])
-        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2), still[:0], still[:, :0]):
+        widest = np.zeros((1, 4096), np.uint8)
+        reconstructor.push_image(70_000, widest)
+        wider, pairs = np.zeros((1, 4097), np.uint8), np.stack(2 * [still], axis=2)
+        for image in (still.astype(np.float32), still[0], pairs, still[:0], still[:, :0], wider):
             with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
                 reconstructor.push_image(70_000, image)
         with self.assertRaisesRegex(eventide.UsageError, "exposure_end not before exposure_begin, found 60000 us"):
@@ -92,6 +95,10 @@ class Frames(RecordedTest):
         self.assertEqual((whole.shape, whole.dtype), ((80, 100), np.float32))
         part, _ = reconstructor.render(t, size=(100, 80), roi=(10, 20, 30, 40))
         np.testing.assert_array_equal(part, whole[20:60, 10:40])
+        of_a_part = self.reconstructor(roi=(1, 2, 10, 8))
+        of_a_part.push(self.events())
+        self.assertEqual(of_a_part.render(of_a_part.newest())[0].shape, (8, 10))
+        self.assertEqual(of_a_part.render(of_a_part.newest(), size=(32, 24))[0].shape, (24, 32))
 
     def test_come_at_a_rate_that_is_a_number_or_a_text(self):
         def times(fps):
@@ -103,6 +110,11 @@ class Frames(RecordedTest):
             self.assertEqual(times(fps), times(100))
         self.assertEqual(times(60000 / 1001), times("60000/1001"))
         self.assertEqual(times(100 / 3), times("100/3"))
+        seldom = self.reconstructor(fps=1 / 1001, allow_silence=True)
+        far_apart = np.zeros(2, DTYPE)
+        far_apart["t"] = 0, 1100 * 10**6
+        seldom.push(far_apart)
+        self.assertEqual([f.t for f in seldom.frames()][1:], [1001 * 10**6 - 1])
         with self.assertRaisesRegex(eventide.UsageError, "frame rate"):
             self.reconstructor(fps=float("nan"))
         for fps in (True, None, [30]):
