@@ -133,7 +133,9 @@ TEST(HttpAnswers, WhoAsksForOneFrameIsAViewer) {
         viewers.emplace_back(*sink).send(request("GET /stream"));
         ASSERT_EQ(status_of(viewers.back().receive(20)), 200) << i;
     }
-    EXPECT_EQ(client_of(*sink).Get("/frame.png")->status, 503);
+    const auto refused = client_of(*sink).Get("/frame.png");
+    EXPECT_EQ(refused->status, 503);
+    EXPECT_EQ(refused->body, "16 viewers of frames are here already, which is the most\n");
 }
 
 /// The n-th of the server-sent events.
