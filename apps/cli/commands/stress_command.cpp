@@ -8,6 +8,8 @@
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/words.h"
 #include "apps/cli/stress/soak.h"
+#include "apps/cli/stress/soak_plots.h"
+#include "apps/cli/stress/stress_table.h"
 #include "apps/cli/version.h"
 #include "apps/evaluate/plot.h"
 #include "pipeline/parallel_tbb.h"
@@ -28,50 +30,6 @@ namespace {
 
 using stress::short_number;
 
-const char* verdict(const stress::Result& result) {
-    if (!result.ran) return "not run";
-    return result.passed ? "passed" : "FAILED";
-}
-
-std::string number_or_dash(const std::optional<double>& number) {
-    return number ? short_number(*number) : "-";
-}
-
-void print_head(std::FILE* to) {
-    std::fputs(
-        "| case | model | what happened | worst error | bound | verdict |\n"
-        "|---|---|---|---|---|---|\n",
-        to);
-}
-
-/// Also a row of a table in Markdown.
-void print_row(const StressRow& row, std::FILE* to) {
-    std::fprintf(to, "| %s | %s | %s | %s | %s | %s |\n", row.title.c_str(),
-                 printable(row.model).c_str(), printable(row.result.happened).c_str(),
-                 number_or_dash(row.result.error).c_str(), number_or_dash(row.result.bound).c_str(),
-                 verdict(row.result));
-    std::fflush(to);
-}
-
-nlohmann::ordered_json json_of(const std::vector<StressRow>& rows) {
-    nlohmann::ordered_json json;
-    json["machine"] = processor_text();
-    json["program"] = "eventide " + version() + ", " + compiler_text();
-    json["rows"] = nlohmann::ordered_json::array();
-    for (const StressRow& row : rows) {
-        nlohmann::ordered_json one{{"case", row.name},
-                                   {"title", row.title},
-                                   {"model", row.model},
-                                   {"happened", row.result.happened},
-                                   {"verdict", verdict(row.result)},
-                                   {"seconds", row.seconds}};
-        if (row.result.error) one["worst_error"] = *row.result.error;
-        if (row.result.bound) one["bound"] = *row.result.bound;
-        json["rows"].push_back(std::move(one));
-    }
-    return json;
-}
-
 /// What a case throws is its failure, not that of the others.
 StressRow row_of(const stress::Case& one, const std::string& model, const stress::Bench& bench) {
     StressRow row{one.name, one.title, one.of_model ? model : "-", {}, 0};
@@ -83,33 +41,6 @@ StressRow row_of(const stress::Case& one, const std::string& model, const stress
     }
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return row;
-}
-
-Plot plot_of(const std::string& name, const std::string& title, const std::string& unit) {
-    return {.name = name, .title = title, .x_label = "hours of stream time", .y_label = unit};
-}
-
-/// Memory, latency and states over stream time.
-std::vector<Plot> plots_of(const std::vector<stress::SoakSample>& samples) {
-    Plot memory = plot_of("soak_memory", "Resident memory", "MiB");
-    Plot latency = plot_of("soak_latency", "Latency at full speed", "ms");
-    Plot state = plot_of("soak_state", "Recurrent states", "absolute value");
-    memory.series = {{"resident", {}, {}, {}}};
-    latency.series = {{"p50", {}, {}, {}}, {"p99", {}, {}, {}}};
-    state.series = {{"largest", {}, {}, {}}, {"root mean square", {}, {}, {}}};
-    const auto put = [](Series& series, double x, double y) {
-        series.x.push_back(x);
-        series.y.push_back(y);
-    };
-    for (const stress::SoakSample& sample : samples) {
-        const double x = sample.stream_hours;
-        put(memory.series[0], x, sample.resident_mib);
-        put(latency.series[0], x, sample.latency_p50_ms);
-        put(latency.series[1], x, sample.latency_p99_ms);
-        put(state.series[0], x, sample.largest_state);
-        put(state.series[1], x, sample.rms_state);
-    }
-    return {memory, latency, state};
 }
 
 }  // namespace
@@ -162,7 +93,7 @@ void StressCommand::name_stress_files(NamedFiles& files) const {
     for (const std::string& model : models_) files.reads("--models", found_model(model));
     if (!plots_.empty()) files.expect_folder("--plots", plots_);
     if (!plots_.empty())
-        for (const Plot& plot : plots_of({}))
+        for (const Plot& plot : soak_plots({}))
             for (const char* extension : {".svg", ".csv"})
                 files.writes("--plots", std::filesystem::path{plots_} / (plot.name + extension));
     files.writes_when_done("--json", json_);
@@ -238,7 +169,7 @@ int StressCommand::run_cases(Program& program) {
     std::FILE* const table = table_beside(json_);
     std::fprintf(table, "%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
                  compiler_text().c_str());
-    print_head(table);
+    print_stress_head(table);
     Progress progress{program.quiet};
     std::vector<StressRow> rows;
     for (std::size_t c = 0; c < cases.size() && !program.signals.stopping(); ++c)
@@ -249,11 +180,11 @@ int StressCommand::run_cases(Program& program) {
                        {models[m], engine_with(threads_, instructions_), budget(program)});
             progress.clear();
             if (program.signals.stopping()) break;  // it did not come to its end
-            print_row(row, table);
+            print_stress_row(row, table);
             rows.push_back(std::move(row));
         }
     refuse_partial(program);
-    write_result(json_, json_text(json_of(rows)) + "\n", overwrite_, program.signals);
+    write_result(json_, json_text(stress_json(rows)) + "\n", overwrite_, program.signals);
     const auto failed =
         std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.passed; });
     const auto left_out =
@@ -274,7 +205,7 @@ int StressCommand::run_soak(Program& program) {
     std::FILE* const table = table_beside(json_);
     std::fprintf(table, "%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
                  compiler_text().c_str());
-    print_head(table);
+    print_stress_head(table);
     std::vector<StressRow> rows;
     Progress progress{program.quiet};
     for (const std::string& name : models_) {
@@ -289,13 +220,13 @@ int StressCommand::run_soak(Program& program) {
         progress.clear();
         rows.push_back({"soak", short_number(soak_hours_) + " h of pauses and bursts", name,
                         stress::soak_verdict(samples), 0});
-        print_row(rows.back(), table);
+        print_stress_row(rows.back(), table);
         if (plots_.empty()) continue;
-        for (const Plot& plot : plots_of(samples))
+        for (const Plot& plot : soak_plots(samples))
             spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
     }
     refuse_partial(program);
-    write_result(json_, json_text(json_of(rows)) + "\n", overwrite_, program.signals);
+    write_result(json_, json_text(stress_json(rows)) + "\n", overwrite_, program.signals);
     const bool passed =
         std::ranges::all_of(rows, [](const StressRow& row) { return row.result.passed; });
     return passed ? exit_done : int(ErrorKind::failed);

@@ -10,13 +10,6 @@
 
 namespace eventide::app {
 
-/// One line of the table.
-struct StressRow {
-    std::string name, title, model;  ///< model is "-" for cases that have none
-    stress::Result result;
-    double seconds = 0;
-};
-
 class StressCommand : public Command {
 public:
     std::string name() const override { return "stress"; }

@@ -3,6 +3,7 @@
 
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/printable.h"
+#include "apps/cli/run/quality/open_settings.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/state/state_folder.h"

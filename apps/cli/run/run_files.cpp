@@ -4,7 +4,7 @@
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/run/events_out.h"
-#include "apps/cli/run/quality/run_quality.h"
+#include "apps/cli/run/quality/open_settings.h"
 #include "apps/cli/run/state/state_folder.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"

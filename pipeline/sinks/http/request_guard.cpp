@@ -48,7 +48,7 @@ bool equal(std::string_view a, std::string_view b) {
 bool has_token(const RequestHead& request, const std::string& token) {
     constexpr std::string_view kBearer = "bearer ";
     const std::string& given = request.authorization;
-    if (given.size() > kBearer.size() && lower_case(given.substr(0, kBearer.size())) == kBearer &&
+    if (lower_case(given.substr(0, kBearer.size())) == kBearer &&
         equal(std::string_view{given}.substr(kBearer.size()), token))
         return true;
     return equal(request.token, token);

@@ -4,11 +4,11 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/quality/measure_profile.h"
+#include "apps/cli/run/quality/open_settings.h"
 #include "apps/cli/run/quality/profile_cache.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/words.h"
 #include "pipeline/parallel_tbb.h"
-#include "src/core/error.h"
 #include "src/model/model_file.h"
 #include "src/model/model_folders.h"
 
@@ -23,45 +23,6 @@ namespace eventide::app {
 namespace {
 
 constexpr std::size_t kChangesKept = 100;
-
-/// Where event windows end at the camera's images, each has its frame.
-bool cuts_at_images(const RunSettings& settings) {
-    return settings.window != "model" &&
-           parse_window(settings.window).rule == WindowRule::reference;
-}
-
-/// Of the video; 0: one for each event window.
-double video_rate(const RunSettings& settings) {
-    if (settings.fps.automatic) return cuts_at_images(settings) ? 0 : 30;
-    const FrameRate& rate = settings.fps.rate;
-    return rate.is_set() ? double(rate.frames) / double(rate.seconds) : 0;
-}
-
-/// What is asked for, as one factor of the sensor's size.
-QualityLevel asked_level(const RunSettings& settings, const SensorInfo& sensor) {
-    if (!settings.size.exact) return {settings.size.scale, 0};
-    const double area = double(settings.size.exact->width) * settings.size.exact->height /
-                        (double(sensor.width) * sensor.height);
-    return {std::sqrt(area), 0};
-}
-
-bool rate_is_open(const RunSettings& settings) {
-    return settings.fps.automatic && !cuts_at_images(settings);
-}
-
-/// --roi and --crop count pixels of the frame.
-bool scale_is_open(const RunSettings& settings) {
-    return !settings.size_given && !settings.region && settings.adjust.crop_px == 0;
-}
-
-/// Empty: as they were asked for. One frame for each window has the windows' own rate.
-std::optional<SlicerSettings> windows_by_content(const RunSettings& settings,
-                                                 const SlicerSettings& usual) {
-    if (settings.window != "auto" || !rate_of(settings, usual).is_set()) return {};
-    SlicerSettings slicer = parse_window("auto");
-    slicer.max_width = natural_width(usual);
-    return slicer;
-}
 
 double threads_of(const RunSettings& settings) {
     const int usable = usable_threads();
@@ -92,32 +53,6 @@ CachedProfile profile_of(const std::string& name, const Model& model, const RunS
 }
 
 }  // namespace
-
-std::vector<std::string> models_to_choose_from(const RunSettings& settings) {
-    // A state belongs to one model.
-    if (settings.model_given || !settings.state_in.empty()) return {settings.model};
-    return {"default", "small"};
-}
-
-bool chooses_quality(const RunSettings& settings, bool live, double pace) {
-    if (settings.quality == QualityMode::fixed) {
-        if (settings.budget.is_set())
-            spdlog::info("--budget {}: nothing is chosen by it with --quality fixed",
-                         show_budget(settings.budget));
-        return false;
-    }
-    if (settings.budget.is_set() && pace <= 0)
-        throw Error(ErrorKind::usage, "--budget " + show_budget(settings.budget) +
-                                          ": expected a pace to hold, found " + settings.source +
-                                          " as fast as possible; --realtime gives it one");
-    if (settings.engine == Engine::plain) {
-        if (settings.budget.is_set())
-            spdlog::info("--budget {}: nothing is chosen by it with --engine plain",
-                         show_budget(settings.budget));
-        return false;
-    }
-    return live || settings.realtime || settings.budget.is_set();
-}
 
 /// What came out, with what it came from.
 struct RunQuality::Chosen {

@@ -16,14 +16,6 @@
 
 namespace eventide::app {
 
-/// The models --quality may choose, most accurate first (docs/performance.md, "Speed against
-/// error").
-std::vector<std::string> models_to_choose_from(const RunSettings& settings);
-
-/// Whether anything is chosen. Throws Error (usage) where --budget was given and there is no pace
-/// to hold.
-bool chooses_quality(const RunSettings& settings, bool live, double pace);
-
 class RunQuality {
 public:
     struct Place {

@@ -1,4 +1,5 @@
 // What stands around the answers: headers, kinds, and counts of whom they go to.
+#include "src/core/error.h"
 #include "tests/pipeline/sinks/http/served.h"
 
 #include <gmock/gmock.h>
@@ -6,7 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -72,9 +75,10 @@ TEST(HttpAnswers, OfAFrameWithoutSigmaThereIsNoTiff) {
     EXPECT_THAT(answer->body, HasSubstr("no sigma"));
 }
 
-TEST(HttpAnswers, AStreamShowsSigmaAsTheOtherSinksDo) {
+/// The first image of a stream that asks for nothing of its own.
+cv::Mat streamed(Uncertainty how) {
     HttpSettings settings;
-    settings.uncertainty = Uncertainty::side;
+    settings.uncertainty = how;
     const auto sink = open_page(std::move(settings));
     const Frames frames{*sink};
     std::string stream;
@@ -82,10 +86,56 @@ TEST(HttpAnswers, AStreamShowsSigmaAsTheOtherSinksDo) {
         stream.append(bytes, size);
         return stream.find("\r\n--frame") == stream.npos;
     });
-    const auto begin = stream.find("\r\n\r\n") + 4;
-    const cv::Mat image = cv::imdecode(
-        std::vector<char>(stream.begin() + std::ptrdiff_t(begin), stream.end()), cv::IMREAD_COLOR);
-    EXPECT_EQ(image.cols, 2 * 64);
+    const auto begin = std::ptrdiff_t(stream.find("\r\n\r\n") + 4);
+    return cv::imdecode(std::vector<char>(stream.begin() + begin, stream.end()),
+                        cv::IMREAD_UNCHANGED);
+}
+
+TEST(HttpAnswers, AStreamShowsSigmaAsTheOtherSinksDo) {
+    EXPECT_EQ(streamed(Uncertainty::none).cols, 64);
+    EXPECT_EQ(streamed(Uncertainty::none).channels(), 1);
+    EXPECT_EQ(streamed(Uncertainty::side).cols, 2 * 64);
+    EXPECT_EQ(streamed(Uncertainty::overlay).channels(), 3);
+}
+
+TEST(HttpAnswers, LettersThatMeanSomethingInHtmlAreWritten) {
+    HttpSettings settings;
+    settings.title = R"(a<b>&"c'd)";
+    const auto sink = open_page(std::move(settings));
+    EXPECT_THAT(client_of(*sink).Get("/")->body, HasSubstr("a&#60;b&#62;&#38;&#34;c&#39;d"));
+}
+
+TEST(HttpAnswers, AControlThatFailsIsNoMistakeOfWhoAsked) {
+    HttpSettings settings;
+    settings.controls = {
+        {"gain",
+         "",
+         "",
+         0,
+         9,
+         1,
+         {},
+         [](double) { throw Error(ErrorKind::failed, "the camera does not answer"); }},
+        {"rate", "", "", 0, 9, 1, {}, [](double) { throw std::runtime_error{"no memory"}; }}};
+    const auto sink = open_page(std::move(settings));
+    const auto post = [&](const char* json) {
+        return client_of(*sink).Post("/controls", json, "application/json");
+    };
+    EXPECT_EQ(post(R"({"gain": 1})")->status, 500);
+    EXPECT_EQ(post(R"({"gain": 1})")->body, "the camera does not answer\n");
+    EXPECT_EQ(post(R"({"rate": 0})")->status, 500);
+}
+
+TEST(HttpAnswers, WhoAsksForOneFrameIsAViewer) {
+    const auto sink = open_page();
+    std::vector<RawClient> viewers;
+    for (int i = 0; i < HttpSink::kMaxViewers; ++i) {
+        viewers.emplace_back(*sink).send(request("GET /stream"));
+        ASSERT_EQ(status_of(viewers.back().receive(20)), 200) << i;
+    }
+    const auto refused = client_of(*sink).Get("/frame.png");
+    EXPECT_EQ(refused->status, 503);
+    EXPECT_EQ(refused->body, "16 viewers of frames are here already, which is the most\n");
 }
 
 /// The n-th of the server-sent events.
@@ -118,6 +168,7 @@ TEST(HttpAnswers, StatisticsTellWhoLooksAndHowFastEventsCome) {
     ASSERT_EQ(status_of(viewer.receive(20)), 200);
     const auto first = statistics(*sink, 1);
     EXPECT_EQ(first["viewers"], 1);
+    EXPECT_THAT(client_of(*sink).Get("/metrics")->body, HasSubstr("\neventide_http_viewers 1\n"));
     EXPECT_EQ(first["most_viewers"], HttpSink::kMaxViewers);
     EXPECT_EQ(first["sigma_white"], 0.25);
     EXPECT_EQ(first["run"], 0) << "of no time";
@@ -134,9 +185,10 @@ TEST(HttpAnswers, SixteenReadStatisticsAndNoMore) {
     const auto refused = client_of(*sink).Get("/stats");
     EXPECT_EQ(refused->status, 503);
     EXPECT_EQ(refused->body, "16 viewers of statistics are here already, which is the most\n");
-    EXPECT_THAT(client_of(*sink).Get("/metrics")->body, HasSubstr("\neventide_http_viewers 0\n"));
-    EXPECT_THAT(client_of(*sink).Get("/metrics")->body,
-                HasSubstr("\neventide_http_listeners 16\n"));
+    const std::string counts = client_of(*sink).Get("/metrics")->body;
+    EXPECT_THAT(counts, HasSubstr("\neventide_http_viewers 0\n"));
+    EXPECT_THAT(counts, HasSubstr("\neventide_http_listeners 16\n"));
+    EXPECT_THAT(counts, HasSubstr("\neventide_http_refused_total 1\n"));
 }
 
 }  // namespace
