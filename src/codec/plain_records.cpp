@@ -199,7 +199,9 @@ void PlainRecordsParser::end_imu(Batch& into) {
 }
 
 void PlainRecordsParser::tell(std::int64_t t_us) {
-    newest_us_ = std::max(newest_us_.value_or(t_us), t_us);
+    if (const auto newest = validator_.newest_us()) told_.tell_by_events(*newest);
+    told_.tell(t_us);
+    told_.end_packet();
 }
 
 void PlainRecordsParser::finish(Batch& into) {
@@ -207,17 +209,20 @@ void PlainRecordsParser::finish(Batch& into) {
     head_bytes_ = rest_ = 0;
     payload_.clear();
     validator_.finish(into, damage_);
+    if (const auto newest = validator_.newest_us()) told_.tell_by_events(*newest);
+    told_.finish();
 }
 
 void PlainRecordsParser::resync() {
     head_bytes_ = rest_ = 0;
     payload_.clear();
     validator_.resync(damage_);
-    newest_us_.reset();
+    told_ = {};
 }
 
 std::optional<SensorTime> PlainRecordsParser::clock() const {
-    const auto newest = std::max(validator_.newest_us(), newest_us_);  // none is less than any
+    const auto newest =
+        std::max(validator_.newest_us(), told_.newest_us());  // none is less than any
     return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 

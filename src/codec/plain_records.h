@@ -3,6 +3,7 @@
 
 #include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
+#include "src/codec/told_time.h"
 
 #include <array>
 #include <cstddef>
@@ -49,7 +50,7 @@ private:
     std::size_t head_bytes_ = 0;  ///< read of the next one
     std::size_t rest_ = 0;        ///< bytes of payload to come
     std::vector<std::byte> payload_;
-    std::optional<std::int64_t> newest_us_;  ///< of what is no event
+    ToldTime told_;
 };
 
 }  // namespace eventide

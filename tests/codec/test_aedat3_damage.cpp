@@ -138,6 +138,25 @@ TEST(Aedat3, AFlippedBitInAPacketsOverflowCostsThatPacket) {
     }
 }
 
+/// Triggers, with the overflow of their packet: their time is the recording's where no events come.
+TEST(Aedat3, AFlippedBitInAPacketOfTriggersIsNoSilence) {
+    const auto trigger = [](std::uint32_t overflow, std::uint32_t stamp) {
+        return packet_header(0, 8, 2, overflow) + words({special(2), stamp, special(3), stamp});
+    };
+    const auto clock_of = [](const Bytes& bytes) {
+        const Parsed parsed = parse_whole(make_parser(), bytes);
+        expect_same_for_any_split(make_parser(), bytes);
+        return parsed.clock;
+    };
+    const Bytes events = packets_of_events({0, 0});  // up to 2039 us
+    const std::int64_t leap = std::int64_t{1} << 31;
+    EXPECT_EQ(clock_of(events + trigger(1, 3000) + trigger(0, 4000)), from_us(4000));
+    EXPECT_EQ(clock_of(trigger(0, 500) + trigger(1, 700) + events), from_us(2039));
+    EXPECT_EQ(clock_of(events + trigger(1, 3000) + trigger(1, 4000)), from_us(leap + 4000));
+    EXPECT_EQ(clock_of(events + trigger(1, 3000)), from_us(leap + 3000))
+        << "nothing contradicts it";
+}
+
 TEST(Aedat3, AnOverflowThatThePacketsBehindItHaveAsWellIsARealOne) {
     const Parsed parsed = parse_whole(make_parser(), packets_of_events({0, 0, 1, 1}));
     EXPECT_EQ(parsed.data.events.size(), 160U);

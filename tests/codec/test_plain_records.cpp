@@ -75,6 +75,23 @@ TEST(PlainRecords, AnImageComesBeforeTheEventsOfItsTime) {
     EXPECT_LT(into.events.back().t, into.images[0].t);
 }
 
+TEST(PlainRecords, AnImageWithATimeOfItsOwnIsNoSilence) {
+    const auto clock_of = [](std::initializer_list<std::int64_t> images_at) {
+        Batch batch = some_data();
+        batch.images.resize(1, batch.images[0]);
+        const ReferenceImage image = batch.images[0];
+        batch.images.clear();
+        for (const std::int64_t us : images_at) {
+            batch.images.push_back(image);
+            batch.images.back().t = from_us(us);
+        }
+        return parse_whole(make_parser, bytes_of(batch)).clock;
+    };
+    const std::int64_t end = to_us(some_data().events.back().t), far = end + 3'600'000'000;
+    EXPECT_EQ(clock_of({far, end + 40'000}), from_us(end + 40'000));
+    EXPECT_EQ(clock_of({far, far + 40'000}), from_us(far + 40'000));
+}
+
 TEST(PlainRecords, EventsPassTheRulesOfEveryFormat) {
     Batch batch;
     batch.events = {{from_us(100), 1, 1, Polarity::on},

@@ -30,10 +30,6 @@ Aedat3Content::Aedat3Content(bool lower_left, int rows, int width, int height)
       validator_(std::uint64_t(width), std::uint64_t(height),
                  EventValidator::LeapEnds::with_next_packet) {}
 
-void Aedat3Content::move_clock(std::int64_t t_us) {
-    newest_us_ = std::max(newest_us_.value_or(t_us), t_us);
-}
-
 /// A reset sets the camera's clock to zero, and a new stream begins; so does a file that was joined
 /// to this one. Files written after the fact have no step back, and need nothing.
 void Aedat3Content::begin_anew_after_reset(std::int64_t t_us, Batch& into) {
@@ -41,7 +37,7 @@ void Aedat3Content::begin_anew_after_reset(std::int64_t t_us, Batch& into) {
     if (may_begin_anew() && last && t_us < *last) {
         validator_.finish(into, damage_);
         validator_.resync(damage_);
-        newest_us_.reset();
+        told_ = {};
         if (!was_reset_)
             into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
     }
@@ -60,7 +56,7 @@ void Aedat3Content::take_event(const std::byte* record, Batch& into) {
     std::uint64_t y = word.y();
     if (lower_left_) y = rows_ - 1 - y;
     validator_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
-    if (const auto newest = validator_.newest_us()) move_clock(*newest);
+    if (const auto newest = validator_.newest_us()) told_.tell_by_events(*newest);
 }
 
 /// Takes records up to `end`, or up to the first that is not plain, which it returns: like
@@ -88,7 +84,7 @@ const std::byte* Aedat3Content::take_plain_events(const std::byte* record, const
     }
     into.events.resize(std::size_t(out - into.events.data()));
     validator_.pass(base_us_ + newest);
-    move_clock(base_us_ + newest);
+    told_.tell_by_events(base_us_ + newest);
     return record;
 }
 
@@ -125,7 +121,7 @@ void Aedat3Content::take_special(const std::byte* record, Batch& into) {
     if (is_reset && stamp == kLastStamp) {
         trigger->t = from_us(base_us_);
     } else {
-        move_clock(base_us_ + stamp);
+        told_.tell(base_us_ + stamp);
         if (trigger) trigger->t = from_us(base_us_ + stamp);
     }
     if (trigger) into.triggers.push_back(*trigger);
@@ -145,13 +141,14 @@ void Aedat3Content::take_frame(std::span<const std::byte> record, Batch& into) {
         damage_.count(DamageReason::out_of_range);
         return;
     }
-    move_clock(to_us(image->exposure_end));
+    told_.tell(to_us(image->exposure_end));
     into.add_image(std::move(*image));
 }
 
 void Aedat3Content::begin(const Aedat3Packet& packet) {
     base_us_ = std::int64_t(packet.overflow) << 31;
     if (Aedat3Type(packet.type) == Aedat3Type::polarity) validator_.end_packet();
+    told_.end_packet();
 }
 
 void Aedat3Content::take(const Aedat3Packet& packet, std::span<const std::byte> records,
@@ -173,18 +170,19 @@ void Aedat3Content::take_one(Aedat3Type type, std::span<const std::byte> record,
         case Aedat3Type::imu9:
             if ((load_little<std::uint32_t>(record.data()) & 1) == 0) return;
             into.imu.push_back(read_imu(record, base_us_));
-            move_clock(to_us(into.imu.back().t));
+            told_.tell(to_us(into.imu.back().t));
     }
 }
 
 void Aedat3Content::finish(Batch& into) {
     validator_.finish(into, damage_);
-    if (const auto newest = validator_.newest_us()) move_clock(*newest);
+    if (const auto newest = validator_.newest_us()) told_.tell_by_events(*newest);
+    told_.finish();
 }
 
 void Aedat3Content::resync() {
     was_reset_ = is_joined_ = false;
-    newest_us_.reset();
+    told_ = {};
     validator_.resync(damage_);
 }
 

@@ -3,6 +3,7 @@
 
 #include "src/codec/aedat/aedat3_packet.h"
 #include "src/codec/event_validator.h"
+#include "src/codec/told_time.h"
 #include "src/core/damage.h"
 #include "src/core/event.h"
 
@@ -29,7 +30,8 @@ public:
     void join() { is_joined_ = true; }
     void finish(Batch& into);
     void resync();
-    std::optional<std::int64_t> newest_us() const { return newest_us_; }  ///< as Parser::clock()
+    /// As Parser::clock().
+    std::optional<std::int64_t> newest_us() const { return told_.newest_us(); }
     Damage& damage() { return damage_; }
     const Damage& damage() const { return damage_; }
 
@@ -42,7 +44,6 @@ private:
     void take_frame(std::span<const std::byte> record, Batch& into);
     bool may_begin_anew() const { return was_reset_ || is_joined_; }
     void begin_anew_after_reset(std::int64_t t_us, Batch& into);
-    void move_clock(std::int64_t t_us);
 
     bool lower_left_;
     std::uint64_t rows_;  ///< px
@@ -52,7 +53,7 @@ private:
     std::int64_t base_us_ = 0;  ///< what the packet's overflow adds
     bool was_reset_ = false;    ///< since the last packet of events
     bool is_joined_ = false;    ///< another file begins, since the last packet of events
-    std::optional<std::int64_t> newest_us_;
+    ToldTime told_;
 };
 
 }  // namespace eventide

@@ -191,8 +191,9 @@ void Aedat4Parser::take_root(Aedat4Kind kind, const FlatTable& table, Batch& int
         case Aedat4Kind::events: {
             const bool is_reset = anew_us_.has_value();
             newest = take_aedat4_events(table, validator_, anew_us_, into, damage_);
-            if (is_reset && !anew_us_) newest_us_.reset();
-            break;
+            if (is_reset && !anew_us_) told_ = {};
+            if (newest) told_.tell_by_events(*newest);
+            return;
         }
         case Aedat4Kind::image:
             newest = take_aedat4_image(table, validator_, into, damage_);
@@ -208,7 +209,8 @@ void Aedat4Parser::take_root(Aedat4Kind kind, const FlatTable& table, Batch& int
             break;
         }
     }
-    if (newest && (!newest_us_ || *newest > *newest_us_)) newest_us_ = newest;
+    if (newest) told_.tell(*newest);
+    told_.end_packet();
 }
 
 /// All that comes belongs to the table.
@@ -242,8 +244,8 @@ void Aedat4Parser::finish(Batch& into) {
         }
     }
     validator_.finish(into, damage_);
-    if (validator_.newest_us() && (!newest_us_ || *validator_.newest_us() > *newest_us_))
-        newest_us_ = validator_.newest_us();
+    if (const auto newest = validator_.newest_us()) told_.tell_by_events(*newest);
+    told_.finish();
     pending_.clear();
 }
 
@@ -254,12 +256,13 @@ void Aedat4Parser::resync() {
     failed_in_a_row_ = 0;
     position_.reset();
     validator_.resync(damage_);
-    newest_us_.reset();
+    told_ = {};
     anew_us_.reset();
 }
 
 std::optional<SensorTime> Aedat4Parser::clock() const {
-    return newest_us_ ? std::optional(from_us(*newest_us_)) : std::nullopt;
+    const auto newest = told_.newest_us();
+    return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 
 }  // namespace eventide

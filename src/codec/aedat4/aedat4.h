@@ -8,6 +8,7 @@
 #include "src/codec/aedat4/aedat4_table.h"
 #include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
+#include "src/codec/told_time.h"
 
 #include <array>
 #include <cstdint>
@@ -63,7 +64,7 @@ private:
     bool missed_packets_ = false;            ///< what was read is not all there was
     std::optional<std::uint64_t> position_;  ///< in the file; empty after resync()
     Aedat4PacketTrace trace_;
-    std::optional<std::int64_t> newest_us_;
+    ToldTime told_;
     std::optional<std::int64_t> anew_us_;  ///< a trigger said that the clock was reset to this
 };
 
