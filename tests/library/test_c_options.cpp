@@ -62,6 +62,39 @@ TEST_F(COptions, AnImageOfAPartOfTheSensorCorrectsThatPart) {
     EXPECT_TRUE(said("exposure_end not before exposure_begin")) << eventide_error_message();
 }
 
+TEST_F(COptions, ARegionIsThatPartOfTheFrame) {
+    frames_with(repeatable_options());
+    std::int64_t t = 0;
+    eventide_frame frame;
+    ASSERT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    ASSERT_EQ(eventide_render(reconstructor_, t, nullptr, &frame), EVENTIDE_OK);
+    const std::vector<float> whole(frame.intensity, frame.intensity + 64 * 48);
+    const eventide_frame_size part{0, 0, {3, 7, 10, 20}};
+    ASSERT_EQ(eventide_render(reconstructor_, t, &part, &frame), EVENTIDE_OK);
+    ASSERT_EQ(frame.width, 10);
+    ASSERT_EQ(frame.height, 20);
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 10; ++x)
+            ASSERT_EQ(frame.intensity[y * 10 + x], whole[std::size_t(64 * (y + 7) + x + 3)])
+                << x << "," << y;
+}
+
+TEST_F(COptions, AnEventThatComesAfterItsTimeIsCountedAsLate) {
+    eventide_options options = repeatable_options();
+    options.noise_filter = options.lamp_flicker = "off";
+    ASSERT_EQ(open_with(options), EVENTIDE_OK);
+    const eventide_event first{0, 1, 2, 1}, late{50'000, 1, 2, 1};
+    std::int64_t t = 0;
+    EXPECT_EQ(eventide_push(reconstructor_, &first, 1), EVENTIDE_OK);
+    EXPECT_EQ(eventide_advance(reconstructor_, 100'000), EVENTIDE_OK);
+    EXPECT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    EXPECT_EQ(eventide_push(reconstructor_, &late, 1), EVENTIDE_OK);
+    eventide_counters counters;
+    ASSERT_EQ(eventide_count(reconstructor_, &counters), EVENTIDE_OK);
+    EXPECT_EQ(counters.late, 1U);
+    EXPECT_EQ(counters.filtered, 0U);
+}
+
 TEST_F(COptions, AStateIsReplacedWhereThatIsWanted) {
     open();
     const std::string file = temp_ / "state.safetensors";
