@@ -122,7 +122,9 @@ TEST_F(CInterface, FramesHaveNoSigmaAndNoImageCorrectsThemWhereThatIsNotWanted) 
     ASSERT_EQ(eventide_push_image(reconstructor_, &image), EVENTIDE_OK);
     ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);
     eventide_frame frame;
-    ASSERT_EQ(eventide_next(reconstructor_, &frame), EVENTIDE_OK);
+    std::int64_t t = 0;
+    ASSERT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    ASSERT_EQ(eventide_render(reconstructor_, t, nullptr, &frame), EVENTIDE_OK);
     EXPECT_NE(frame.intensity, nullptr);
     EXPECT_EQ(frame.sigma, nullptr);
     eventide_counters counters;
@@ -223,6 +225,8 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     EXPECT_EQ(eventide_recording_open((temp_ / "none").c_str(), nullptr, 0, 0, &source),
               EVENTIDE_INPUT);
     EXPECT_EQ(eventide_camera_open("kodak:", nullptr, 0, &source), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_camera_open("sim:demo", "davis.toml", 0, &source), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("camera settings 'davis.toml'"));
     EXPECT_EQ(source, nullptr);
     eventide_source_close(nullptr);
     eventide_writer_close(nullptr);

@@ -231,6 +231,12 @@ TEST_F(CSources, WritesWhatItReadsAgain) {
                                       {from_us(1001), 5, 6, Polarity::off},
                                       {from_us(2000), 63, 47, Polarity::on}};
     EXPECT_EQ(events_of(file), expected);
+    EXPECT_EQ(eventide_writer_open(file.c_str(), nullptr, 64, 48, 0, &writer), EVENTIDE_USAGE);
+    ASSERT_EQ(eventide_writer_open(file.c_str(), nullptr, 64, 48, 1, &writer), EVENTIDE_OK);
+    EXPECT_EQ(eventide_write(writer, events, 1), EVENTIDE_OK);
+    EXPECT_EQ(eventide_writer_finish(writer), EVENTIDE_OK);
+    eventide_writer_close(writer);
+    EXPECT_EQ(events_of(file).size(), 1U) << "replaced";
 }
 
 }  // namespace

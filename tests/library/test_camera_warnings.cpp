@@ -83,6 +83,35 @@ TEST_F(CameraWarnings, ReachPythonsLog) {
 #endif
 }
 
+/// Reads until the camera that is unplugged is missed.
+eventide_status status_when_unplugged(testing_support::UsbTestbed& bed, int reconnect) {
+    std::string warning;
+    const auto keep = [](void* context, const char* text) {
+        *static_cast<std::string*>(context) += text;
+    };
+    const eventide_callbacks callbacks{sizeof callbacks, &warning, nullptr, keep};
+    eventide_source* source = nullptr;
+    EXPECT_EQ(eventide_camera_open_with("davis:", nullptr, reconnect, &callbacks, &source),
+              EVENTIDE_OK)
+        << eventide_error_message();
+    bed.unplug();
+    eventide_status status = EVENTIDE_OK;
+    const eventide_event* events = nullptr;
+    for (std::size_t count = 0; status == EVENTIDE_OK && warning.empty();)
+        status = eventide_read(source, &events, &count);
+    eventide_source_close(source);
+    return status;
+}
+
+TEST(UnpluggedCameras, AreWaitedForInCWhereThatIsWanted) {
+    testing_support::UsbTestbed bed;
+    for (const bool is_wanted : {false, true}) {
+        bed.plug_in(
+            std::make_shared<testing_support::DavisModel>(testing_support::DavisModelSettings{}));
+        EXPECT_EQ(status_when_unplugged(bed, is_wanted), is_wanted ? EVENTIDE_OK : EVENTIDE_DEVICE);
+    }
+}
+
 }  // namespace
 }  // namespace eventide::test
 

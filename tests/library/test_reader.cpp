@@ -89,6 +89,17 @@ TEST_F(Recordings, AreReadFromATimeOn) {
     EXPECT_TRUE(rest_of(reader).events.empty());
 }
 
+TEST_F(Recordings, AreReadFromTheBeginningWhereverTheyAre) {
+    const Batch all = all_of(recording());
+    for (int batches = 1; batches < 5; ++batches) {
+        EventReader reader{recording()};
+        Batch batch;
+        for (int i = 0; i < batches; ++i) ASSERT_TRUE(reader.read(batch));
+        reader.seek(all.events.front().t);
+        EXPECT_TRUE(rest_of(reader).events == all.events) << batches;
+    }
+}
+
 TEST_F(Recordings, CountDamageEachTimeItIsRead) {
     write_text(temp_ / "log.txt", "64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 99 6 1\n0.4 7 8 1\n");
     EventReader reader{temp_ / "log.txt"};

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -102,10 +103,15 @@ TEST_F(Recordings, AreWrittenInTheOrderOfTimeOnly) {
 TEST_F(Recordings, AreWrittenWithinTheSensorOnly) {
     for (const std::string format : {"aedat4", "aedat3", "evt3", "text"}) {
         EventWriter writer{temp_ / ("within." + format), {"", "", "", 64, 48}, {format, false}};
-        const std::vector<Event> outside{{from_us(1), 64, 2, Polarity::on}};
-        EXPECT_NE(error_of([&] { writer.write(outside); }).find("within 64x48 px, found one at 64"),
-                  std::string::npos)
-            << format;
+        for (const auto& [x, y, found] : {std::tuple{64, 2, "64,2"}, {2, 48, "2,48"}}) {
+            const std::vector<Event> outside{
+                {from_us(1), std::uint16_t(x), std::uint16_t(y), Polarity::on}};
+            EXPECT_NE(error_of([&] {
+                          writer.write(outside);
+                      }).find(std::string{"within 64x48 px, found one at "} + found),
+                      std::string::npos)
+                << format;
+        }
     }
 }
 

@@ -139,6 +139,15 @@ class Frames(RecordedTest):
         reconstructor.reset()
         reconstructor.push(events)
 
+    def test_go_on_to_the_end_that_is_told(self):
+        def count(after):
+            reconstructor, events = self.reconstructor(), self.events()
+            reconstructor.push(events)
+            reconstructor.finish(int(events["t"][-1]) + after)
+            return len(list(reconstructor.frames()))
+
+        self.assertEqual(count(100_000), count(0) + 10)
+
     def test_with_a_state_go_on(self):
         reconstructor = self.reconstructor()
         reconstructor.push(self.events())

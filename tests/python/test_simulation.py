@@ -43,6 +43,12 @@ class Simulations(RecordedTest):
         with self.assertRaises(eventide.InputError):
             eventide.simulate(textures=self.folder / "missing")
 
+    def test_truths_come_as_often_as_asked(self):
+        for rate in (50, 200):
+            simulation = eventide.simulate(size=(32, 24), seconds=0.1, truths_per_second=rate)
+            times = [t for _, truths in simulation for t, _ in truths]
+            self.assertEqual(set(np.diff(times)), {1e6 / rate})
+
 
 class Evaluation(RecordedTest):
     def test_a_frame_is_judged_as_the_program_judges_it(self):
