@@ -17,8 +17,8 @@ TEST_F(RunPipes, StreamsY4mToStandardOutputAndFfmpegReadsIt) {
     const Result result =
         run({"bash", "-c",
              std::string{EVENTIDE_PROGRAM} + " run " + recording() + " --model " + model() +
-                 " --fps 200 --out - | ffprobe -v error -count_frames " +
-                 "-show_entries stream=nb_read_frames,r_frame_rate,width -of " + "csv=p=0 -"});
+                 " --fps 200 --out - | ffprobe -v error -count_frames "
+                 "-show_entries stream=nb_read_frames,r_frame_rate,width -of csv=p=0 -"});
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(result.output == "64,200/1,80\n" || result.output == "64,200/1,81\n")
         << result.output;
