@@ -134,8 +134,7 @@ ReadStatus UsbCamera::read(RawPacket& into) {
     } catch (const Error& error) {  // it is there, and may work once it was opened again
         if (!options_.reconnect || !was_streaming) throw;
         into.bytes.clear();
-        look_for_namesakes_now();
-        stop_device();
+        leave([this] { stop_device(); });
         warnings_.tell(error);
         return ReadStatus::timeout;
     }

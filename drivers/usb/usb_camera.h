@@ -103,7 +103,7 @@ private:
     void close();
     void expect_return_of(const UsbIdentity& identity);
     void look_for_namesakes(const UsbIdentity& identity);
-    void look_for_namesakes_now();
+    void leave(const std::function<void()>& how);
     ReadStatus lost();
     ReadStatus wait_for_return();
 

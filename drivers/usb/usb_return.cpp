@@ -3,6 +3,8 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <thread>
 
 namespace eventide {
@@ -55,11 +57,15 @@ void UsbCamera::look_for_namesakes(const UsbIdentity& identity) {
                       "': if this one is unplugged, it is taken back at its port alone");
 }
 
-/// When it is missed: so soon nobody can have plugged it in elsewhere.
-void UsbCamera::look_for_namesakes_now() {
-    if (!options_.reconnect || !device_) return;
+/// Closes the camera, and looks for others once it is closed: so soon nobody can have plugged it in
+/// elsewhere.
+void UsbCamera::leave(const std::function<void()>& how) {
+    std::optional<UsbIdentity> identity;
+    if (options_.reconnect && device_) identity = device_->identity();
+    how();
+    if (!identity) return;
     try {
-        look_for_namesakes(device_->identity());
+        look_for_namesakes(*identity);
     } catch (const Error&) {
         // Its serial number has to do.
     }
@@ -67,8 +73,7 @@ void UsbCamera::look_for_namesakes_now() {
 
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
 ReadStatus UsbCamera::lost() {
-    look_for_namesakes_now();
-    close();
+    leave([this] { close(); });
     if (!options_.reconnect) refuse(std::string{"was unplugged"} + kReconnect);
     return ReadStatus::timeout;
 }

@@ -91,7 +91,6 @@ void EventPacketParser::begin_packet() {
     stamp_us_ = std::int64_t(stamp) / 1000;
     high_ = low_ = 0;
     x_ = y_ = kNowhere;
-    evt3_batch_.clear();
 }
 
 void EventPacketParser::end_packet(Batch& into) {

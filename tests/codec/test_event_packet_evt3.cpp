@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <span>
+#include <string>
+
 namespace eventide::event_packets {
 namespace {
 
@@ -77,6 +80,25 @@ TEST(EventPacket, AfterAGapTimeGoesOnAndOnlyADriverThatBeganAnewSetsIt) {
     ASSERT_EQ(batch.triggers.size(), 1U);
     EXPECT_EQ(batch.triggers[0].kind, Trigger::Kind::timestamp_reset);
     EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
+/// The header of a RAW file among the words, and behind it a message that tells no time for sure:
+/// what it said of the clock was lost where the next message began.
+TEST(EventPacket, AnEvt3StreamThatBeginsAnewSaysSoHoweverItsMessagesAreCut) {
+    const std::string header = "% evt 3.0\n% end\n";
+    const auto message = [](const Bytes& words) { return packet({0, kStamp}, words); };
+    const auto event_at = [](unsigned high_word, unsigned x) {
+        return bytes_of({evt_high(high_word), evt_low(0), evt_row(1), evt_x(x, true)});
+    };
+    const auto text = std::as_bytes(std::span(header));
+    const Bytes stream = message(event_at(900, 1)) + message(event_at(901, 2)) +
+                         message(Bytes(text.begin(), text.end()) + bytes_of({evt_high(5)})) +
+                         message(event_at(5, 3));
+    const Parsed parsed = parse_whole(parser_of(EventPacketEncoding::evt3), stream);
+    ASSERT_EQ(parsed.data.events.size(), 3U);
+    EXPECT_LT(parsed.data.events[2].t, parsed.data.events[1].t);
+    ASSERT_EQ(parsed.data.triggers.size(), 1U);
+    EXPECT_EQ(parsed.data.triggers[0].kind, Trigger::Kind::timestamp_reset);
 }
 
 TEST(EventPacket, OfAnEvt3PacketThatIsCutByAGapNothingComesWithTheNext) {
