@@ -235,7 +235,7 @@ TEST_F(Signals, CountersThatNobodyReadsAnyMoreAreToldAndEndNoRun) {
     ASSERT_EQ(mkfifo(stats.c_str(), 0600), 0);
     Process process =
         start({"run", kEndless, "--out", "gray8:-", "--stats", stats}, {.output_to_pipe = true});
-    ::close(::open(stats.c_str(), O_RDONLY));
+    leave(stats);
     EXPECT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
     process.signal(SIGINT);
     const Result result = process.wait();
