@@ -35,9 +35,9 @@ public:
 
     struct Settings {
         FrameRate rate;
-        std::optional<SensorTime> from;  ///< no frame before
-        int lookahead = 0;               ///< 0 to kMaxLookahead
-        bool live = false;               ///< may skip frames
+        std::optional<SensorTime> from{};  ///< no frame before
+        int lookahead = 0;                 ///< 0 to kMaxLookahead
+        bool live = false;                 ///< may skip frames
         std::size_t waits_at_most =
             1;                       ///< event windows behind this one, before frames are skipped
         bool allow_silence = false;  ///< no limit to frames in a row without events

@@ -14,11 +14,12 @@ namespace {
 class RunPipes : public ProgramTest {};
 
 TEST_F(RunPipes, StreamsY4mToStandardOutputAndFfmpegReadsIt) {
-    const Result result =
-        run({"bash", "-c",
-             std::string{EVENTIDE_PROGRAM} + " run " + recording() + " --model " + model() +
-                 " --fps 200 --out - | ffprobe -v error -count_frames "
-                 "-show_entries stream=nb_read_frames,r_frame_rate,width -of csv=p=0 -"});
+    std::string command = EVENTIDE_PROGRAM;
+    command.append(" run ").append(recording()).append(" --model ").append(model());
+    command +=
+        " --fps 200 --out - | ffprobe -v error -count_frames "
+        "-show_entries stream=nb_read_frames,r_frame_rate,width -of csv=p=0 -";
+    const Result result = run({"bash", "-c", command});
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(result.output == "64,200/1,80\n" || result.output == "64,200/1,81\n")
         << result.output;
