@@ -24,18 +24,19 @@ std::string dropped_text(std::uint64_t images) {
 int Run::report(const RunProgress& end) const {
     const Snapshot end_counters = counters();
     spdlog::info("{}", summary_text(end_counters, end));
-    if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
+    if (!input_.filters().empty()) spdlog::info("filters left out: {}", input_.filters().report());
     if (const std::string remark = flicker_remark(end_counters.flicker); !remark.empty())
         spdlog::info("{}", remark);
-    if (const std::string why = left_out_text(settings_.source, sensor_.format, end_counters.events,
-                                              end_counters.damaged);
+    if (const std::string why = left_out_text(settings_.source, input_.sensor().format,
+                                              end_counters.events, end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);
-    if (states_ && states_->kept() < states_at_.size() && !program_.signals.stopping())
-        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states_->kept()] +
+    const std::size_t kept = outputs_.states() != nullptr ? outputs_.states()->kept() : 0;
+    if (outputs_.states() != nullptr && kept < states_at_.size() && !program_.signals.stopping())
+        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[kept] +
                                           ": expected a time before the run's last event, found "
                                           "one after it; wrote " +
-                                          counted(states_->kept(), "state"));
+                                          counted(kept, "state"));
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
@@ -45,23 +46,11 @@ int Run::report(const RunProgress& end) const {
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);
-    const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
+    const std::uint64_t unsent = outputs_.lost_datagrams();
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
-    const bool all_written = wrote_all_data();
+    const bool all_written = outputs_.is_all_written(settings_);
     const bool lost = lost_data(end_counters) || unsent > 0 || !all_written;
     return settings_.strict && lost ? exit_data_lost : exit_done;
-}
-
-/// Of the files of data that the run wrote. Whether all that they were to hold is in them.
-bool Run::wrote_all_data() const {
-    bool all = true;
-    const auto say = [&](const std::string& file, const WrittenData& data) {
-        for (const std::string& remark : data.remarks(file)) spdlog::warn("{}", remark);
-        all = all && data.is_whole();
-    };
-    if (recorded_) say(settings_.record, recorded_->data());
-    if (events_out_) say(settings_.events_out, events_out_->data());
-    return all;
 }
 
 }  // namespace eventide::app

@@ -45,17 +45,17 @@ SinkPlan Run::sink_plan(const OutputOptions& growing) {
     plan.rate = video_rate_of(settings_, slicer_);
     plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
-    plan.sensor = {sensor_.width, sensor_.height};
-    plan.live = live();
+    plan.sensor = {input_.sensor().width, input_.sensor().height};
+    plan.live = input_.live();
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
-    plan.reference_caption = reference_caption(sensor_);
+    plan.reference_caption = reference_caption(input_.sensor());
     plan.questions.stopping = growing.give_up;
     plan.questions.unread = growing.unread;
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
     plan.questions.run_json = [this] { return run_json(); };
-    if (opened_.paced != nullptr)
-        plan.questions.speed_changed = [this](double factor) { opened_.paced->set_speed(factor); };
+    if (input_.paced() != nullptr)
+        plan.questions.speed_changed = [this](double factor) { input_.paced()->set_speed(factor); };
     plan.questions.snapshot = [this] { return snapshot(); };
     plan.questions.stats = [this](double event_rate) {
         RunProgress now = progress();
@@ -67,13 +67,13 @@ SinkPlan Run::sink_plan(const OutputOptions& growing) {
 }
 
 std::vector<HttpControl> Run::controls() {
-    LiveControlsPlan plan{settings_, changes_, {sensor_.width, sensor_.height}};
+    LiveControlsPlan plan{settings_, changes_, {input_.sensor().width, input_.sensor().height}};
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
     plan.lookahead = lookahead_;
     plan.speed = speed_;
-    if (opened_.paced != nullptr)
-        plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
-    plan.live = live();
+    if (input_.paced() != nullptr)
+        plan.set_speed = [this](double factor) { input_.paced()->set_speed(factor); };
+    plan.live = input_.live();
     plan.slicer = slicer_;
     auto controls = live_controls(plan);
     quality_.follow(controls, changes_);
@@ -81,19 +81,21 @@ std::vector<HttpControl> Run::controls() {
 }
 
 ModelRenderStage Run::render_stage() {
-    const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
+    const RenderRequest request = request_of(settings_, input_.sensor(), lookahead_, undistortion_);
     if (settings_.frames == CameraFrames::ignore) return {network_.renderer(), request};
-    if (live()) images_.keep_at_most(ImagesOnTheWay::kKeptLive);
-    return {network_.renderer(), request, sensor_.width, sensor_.height, images_};
+    if (input_.live()) images_.keep_at_most(ImagesOnTheWay::kKeptLive);
+    return {network_.renderer(), request, input_.sensor().width, input_.sensor().height, images_};
 }
 
 PipelineParts Run::parts() {
     RenderStage& render = colour_ ? colour_->render() : static_cast<RenderStage&>(render_);
     EncodeStage& encode = colour_ ? colour_->encode() : network_.encoder();
     EventFilter* last = filter_.get();
-    if (events_out_) last = events_out_.get();
-    PipelineParts parts{source(), encode, render, {}, last, &observers_};
-    for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
+    if (outputs_.events() != nullptr) last = outputs_.events();
+    // What is recorded is what came, before any filter.
+    Source& came = outputs_.recorded() != nullptr ? *outputs_.recorded() : input_.source();
+    PipelineParts parts{input_.behind_filters(came), encode, render, {}, last, &observers_};
+    for (const auto& sink : outputs_.sinks()) parts.sinks.push_back(sink.get());
     return parts;
 }
 
@@ -102,24 +104,25 @@ PipelineSettings Run::pipeline_settings() {
     settings.bins = network_.config().bins;
     settings.event_windows.slicer = slicer_;
     settings.rate = rate_;
-    settings.frames_from = span_.frames_from;
+    settings.frames_from = input_.span().frames_from;
     if (settings_.out.empty()) settings.frames_from = from_us(kFarthestUs);  // none
-    if (resumed_) settings.resume = &resumed_->stream;
+    if (input_.resumed()) settings.resume = &input_.resumed()->stream;
     settings.state_stops = {states_at_,
                             [this](const PipelineState& memory) { keep_state(memory); }};
     settings.lookahead = lookahead_;
-    settings.latency = latency_of(settings_, live());
+    settings.latency = latency_of(settings_, input_.live());
     settings.reset_on_gap = settings_.reset_on_gap;
     settings.allow_silence = settings_.allow_silence;
     settings.event_preview = settings_.events || sheet_ || page_;
     settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
     settings.halvings = quality_.halvings();
     settings.events_per_pixel = render_.fused() != nullptr;
-    settings.buffers = buffers_for(*opened_.source);
-    if (live()) settings.buffers.latents = 3;
+    settings.buffers = buffers_for(input_.source());
+    if (input_.live()) settings.buffers.latents = 3;
     if (settings_.buffers_packets) {
         const auto packets = std::size_t(*settings_.buffers_packets);
-        settings.buffers.packets = live() ? packets : std::min(settings.buffers.packets, packets);
+        settings.buffers.packets =
+            input_.live() ? packets : std::min(settings.buffers.packets, packets);
     }
     if (settings_.buffers_grids) settings.buffers.grids = std::size_t(*settings_.buffers_grids);
     if (settings_.buffers_latents)
@@ -136,9 +139,9 @@ std::string Run::run_json() {
     json["arguments"] = secret ? without_token(program_.arguments) : program_.arguments;
     // Not stopped, and nothing failed: all that was asked for is there.
     json["complete"] = pipeline_.has_value() && pipeline_->is_whole();
-    json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
-                      {"sensor", sensor_.name},   {"serial", sensor_.serial},
-                      {"width", sensor_.width},   {"height", sensor_.height}};
+    json["source"] = {{"name", settings_.source},       {"format", input_.sensor().format},
+                      {"sensor", input_.sensor().name}, {"serial", input_.sensor().serial},
+                      {"width", input_.sensor().width}, {"height", input_.sensor().height}};
     json["model"] = {{"file", network_.file().string()},
                      {"encoder", encoder_identity(network_.model())},
                      {"engine", network_.encoder().description()},

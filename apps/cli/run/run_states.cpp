@@ -16,10 +16,10 @@
 namespace eventide::app {
 
 /// Goes on where another run stopped: the networks, and where it was kept also the stream.
-void Run::resume() {
-    restore_state(*std::exchange(state_, std::nullopt), settings_.state_in, network_,
-                  colour_ ? &*colour_ : nullptr);
-    if (!resumed_) return;
+void Run::resume(TensorFile state) {
+    restore_state(std::move(state), settings_.state_in, network_, colour_ ? &*colour_ : nullptr);
+    const auto& resumed = input_.resumed();
+    if (!resumed) return;
     const auto require = [this](const char* option, const std::string& kept,
                                 const std::string& found) {
         if (kept != found)
@@ -27,14 +27,13 @@ void Run::resume() {
                                               ": expected the state of a run with " + option + ' ' +
                                               found + ", found that of one with " + kept);
     };
-    require("--window", resumed_->window, window_text(slicer_));
-    require("--noise-filter", resumed_->noise_filter,
-            noise_filter_of(settings_, network_.config()));
-    require("--lamp-flicker", resumed_->lamp_flicker, lamp_flicker_of(settings_, !as_live()));
+    require("--window", resumed->window, window_text(slicer_));
+    require("--noise-filter", resumed->noise_filter, noise_filter_of(settings_, network_.config()));
+    require("--lamp-flicker", resumed->lamp_flicker, lamp_flicker_of(settings_, !input_.as_live()));
     try {
         if (filter_)
-            filter_->restore(resumed_->filters);
-        else if (resumed_->filters != EventFilters::State{})
+            filter_->restore(resumed->filters);
+        else if (resumed->filters != EventFilters::State{})
             throw Error(ErrorKind::input, "expected nothing of filters");
     } catch (const Error& error) {
         throw Error(error.kind(), settings_.state_in + ": " + error.what());
@@ -44,10 +43,10 @@ void Run::resume() {
 void Run::keep_state(const PipelineState& memory) {
     const StreamState state{memory, filter_ ? filter_->state() : EventFilters::State{},
                             window_text(slicer_), noise_filter_of(settings_, network_.config()),
-                            lamp_flicker_of(settings_, !as_live())};
+                            lamp_flicker_of(settings_, !input_.as_live())};
     TensorFile file = state_of(network_, nullptr);
-    put_stream_state(state, sensor_.width, file);
-    states_->keep(file);
+    put_stream_state(state, input_.sensor().width, file);
+    outputs_.states()->keep(file);
 }
 
 /// At the end of the run, which a pipe without a reader must not put off for ever.

@@ -14,9 +14,9 @@ namespace eventide::app {
 std::size_t count_outputs(const RunSettings& settings);
 
 /// A pipe is no output any more once nobody reads it. Thread: any.
-class OpenOutputs {
+class OutputsLeft {
 public:
-    explicit OpenOutputs(std::size_t outputs) : left_(std::ptrdiff_t(outputs)) {}
+    explicit OutputsLeft(std::size_t outputs) : left_(std::ptrdiff_t(outputs)) {}
 
     /// Says that `name` is not read any more; once for each. Whether the run goes on for others.
     bool go_on_without(const std::string& name, PipeReader why);

@@ -1,5 +1,5 @@
 // Outputs for which a run goes on.
-#include "apps/cli/run/open_outputs.h"
+#include "apps/cli/run/outputs_left.h"
 
 #include "apps/cli/printable.h"
 #include "apps/cli/settings/sink_name.h"
@@ -19,7 +19,7 @@ std::size_t count_outputs(const RunSettings& settings) {
     return count;
 }
 
-bool OpenOutputs::go_on_without(const std::string& name, PipeReader why) {
+bool OutputsLeft::go_on_without(const std::string& name, PipeReader why) {
     // The others are given up only when the run is to end.
     const bool ends = --left_ <= 0 || why != PipeReader::left;
     const bool is_expected = ends && why == PipeReader::left;
