@@ -37,6 +37,8 @@ void refuse_camera(const std::string& path) {
 }
 
 std::unique_ptr<Recording> open(const std::string& path, const OpenOptions& options) {
+    if (path.empty())
+        throw Error(ErrorKind::input, "reader: expected the name of a recording, found none");
     refuse_camera(path);
     return open_recording(path, options);
 }

@@ -9,9 +9,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -37,6 +40,57 @@ ParallelFor watched_threads(int threads) {
         work();
     };
 }
+#else
+
+/// Arenas by their number of threads.
+using Arenas = std::multimap<int, tbb::task_arena>;
+
+/// Those that nobody uses any more, for whoever wants one next: oneTBB keeps some kilobytes of each
+/// that ends, for good.
+class IdleArenas {
+public:
+    Arenas::node_type take(int threads) {
+        {
+            const std::lock_guard lock{mutex_};
+            if (const auto found = arenas_.find(threads); found != arenas_.end())
+                return arenas_.extract(found);
+        }
+        Arenas made;
+        return made.extract(made.emplace(threads, threads));
+    }
+    void give_back(Arenas::node_type arena) {
+        const std::lock_guard lock{mutex_};
+        arenas_.insert(std::move(arena));
+    }
+
+private:
+    std::mutex mutex_;
+    Arenas arenas_;
+};
+
+IdleArenas& idle_arenas() {
+    // Never ends: what is static in a program may give one back after everything of ours has ended.
+    static IdleArenas& all = *new IdleArenas;
+    return all;
+}
+
+/// One of our own: its number of threads holds here and is not set for the whole process.
+class Arena {
+public:
+    explicit Arena(int threads) : arena_(idle_arenas().take(threads)) {}
+    ~Arena() { idle_arenas().give_back(std::move(arena_)); }
+    Arena(const Arena&) = delete;
+    Arena& operator=(const Arena&) = delete;
+
+    template <typename Body>
+    void execute(const Body& body) {
+        arena_.mapped().execute(body);
+    }
+
+private:
+    Arenas::node_type arena_;
+};
+
 #endif
 
 }  // namespace
@@ -53,8 +107,7 @@ ParallelFor parallel_for_with(int threads) {
     const int usable = usable_threads();
     const int given = threads == 0 ? usable : std::min(threads, usable);
     if (given == 1) return sequential_for;
-    // An arena of our own: the number holds here and is not set for the whole process.
-    const auto arena = std::make_shared<tbb::task_arena>(given);
+    const auto arena = std::make_shared<Arena>(given);
     return [arena](int n, const std::function<void(int)>& body) {
         if (n == 1)
             body(0);

@@ -12,7 +12,6 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <utility>
 
@@ -22,15 +21,18 @@ namespace py = pybind11;
 
 namespace {
 
-using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+/// Row by row, a copy where it has to be. Made of another array by its constructor, which raises
+/// what NumPy does where memory is short; ensure() would give none.
+template <typename T>
+using Plain = py::array_t<T, py::array::c_style | py::array::forcecast>;
+using Numbers = Plain<std::int64_t>;
 
 constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max();
 
 /// As 64-bit numbers. What is larger becomes the largest, which is no time and on no sensor.
 Numbers numbers_of(const py::array& values) {
-    if (values.dtype().kind() != 'u' || values.itemsize() < 8) return Numbers::ensure(values);
-    const auto whole =
-        py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>::ensure(values);
+    if (values.dtype().kind() != 'u' || values.itemsize() < 8) return Numbers(values);
+    const Plain<std::uint64_t> whole(values);
     Numbers clamped(whole.size());
     std::transform(whole.data(), whole.data() + whole.size(), clamped.mutable_data(),
                    [](std::uint64_t value) { return std::int64_t(std::min(value, kLargest)); });
@@ -151,9 +153,7 @@ Array2<float> plane_of(const py::array& array, const char* what) {
         throw Error(ErrorKind::usage, std::string{what} +
                                           ": expected floats, 0 black to 1 white, found " +
                                           std::string(py::str(array.dtype())));
-    const auto values =
-        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!values) throw std::bad_alloc();
+    const Plain<float> values(array);
     Array2<float> plane(int(values.shape(0)), int(values.shape(1)));
     std::copy_n(values.data(), plane.values().size(), plane.values().begin());
     return plane;
@@ -182,8 +182,7 @@ ReferenceImage image_of(const py::array& array) {
                         std::to_string(kLargestSensorSide) + " px each way, found " +
                         std::string(py::str(array.dtype())) + " of shape " +
                         std::string(py::str(array.attr("shape"))));
-    const auto values =
-        py::array_t<std::uint16_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    const Plain<std::uint16_t> values(array);
     ReferenceImage image;
     image.channels = int(channels);
     image.pixels = {int(array.shape(0)), int(array.shape(1)) * image.channels};

@@ -1,5 +1,7 @@
 """Events of any program's arrays: fields by name, whatever their order and width."""
 
+import pathlib
+import resource
 import unittest
 
 import eventide
@@ -81,6 +83,20 @@ class Arrays(RecordedTest):
             self.assertEqual(counters["bad_time"], 2)
             self.assertEqual(counters["off_sensor"], 1)
             self.assertEqual(counters["time_backwards"], 0)
+
+    def test_more_than_memory_has_room_for_is_refused_and_what_follows_goes_on(self):
+        few = np.zeros(1, [("t", "<u8"), ("x", "<u2"), ("y", "<u2"), ("p", "?")])
+        writer = eventide.Writer(self.folder / "few.aedat4", 64, 48)
+        held = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (held + 2**28, hard))
+        try:
+            with self.assertRaises(MemoryError):
+                writer.write(np.broadcast_to(few, 10**8))
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+        writer.write(few)
+        writer.finish()
 
     def test_what_are_no_events_is_refused_in_words(self):
         reconstructor = self.reconstructor()

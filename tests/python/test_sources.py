@@ -176,6 +176,8 @@ class Sources(RecordedTest):
     def test_no_recording_is_refused_in_words(self):
         with self.assertRaisesRegex(eventide.InputError, "/no/such: cannot open"):
             eventide.open("/no/such")
+        with self.assertRaisesRegex(eventide.InputError, "expected the name of a recording, found none"):
+            eventide.open("")
 
     def test_names_of_files_are_any_bytes(self):
         name = os.fsencode(self.folder) + b"/caf\xe9.aedat4"
