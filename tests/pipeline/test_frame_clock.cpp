@@ -174,6 +174,16 @@ TEST(FrameSchedule, ARateCanBeginWhereThereWasNone) {
               (Frames{{14'000, 1}, {18'000, 2}}));
 }
 
+TEST(FrameSchedule, ARateThatBeginsWithANewClockKnowsNoFrameOfTheOldOne) {
+    FrameSchedule schedule({});
+    using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+    EXPECT_EQ(frames_of(schedule, {{from_us(9'000'000), from_us(9'005'000)}}),
+              (Frames{{9'005'000, 0}}));
+    schedule.restart();
+    schedule.change_rate({200, 1});
+    EXPECT_EQ(frames_of(schedule, {{from_us(7), from_us(6'000)}}), (Frames{{7, 1}, {5'007, 2}}));
+}
+
 TEST(FrameSchedule, ARateThatIsChangedBeforeTheFirstFrameIsTheRate) {
     FrameSchedule schedule({100, 1}, from_us(5000));
     schedule.change_rate({1000, 1});
