@@ -114,10 +114,9 @@ DueFrame FrameSchedule::next() {
 }
 
 void FrameSchedule::change_rate(const FrameRate& rate) {
-    if (clock_ && end_ > base_)
-        last_ = clock_->time_of(end_ - 1 - base_);
-    else if (!rate_.is_set() && end_ > 0)
-        last_ = window_end_;
+    // Frames since the rate or the sensor's clock began; of those before it `last_` is true
+    // already.
+    if (end_ > base_) last_ = clock_ ? clock_->time_of(end_ - 1 - base_) : window_end_;
     rate_ = rate;
     clock_.reset();
     base_ = next_ = end_;

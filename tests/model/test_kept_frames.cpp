@@ -210,6 +210,20 @@ TEST_F(KeptFramesOfCodes, CodesThatDriftStayWithinTheBound) {
     EXPECT_LT(copying.pixels_rendered(), judge.pixels_rendered() * 3 / 4);
 }
 
+TEST_F(KeptFramesOfCodes, CodesThatDriftAreTheirOwnWhereNothingIsLeftOut) {
+    EngineOptions options = with_copies(.01, 0);
+    options.skip_quiet = false;
+    Renderer renderer{model_, kWidth, kHeight, options};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    for (int k = 1; k <= 2; ++k) {
+        next_window();
+        for (float& v : latent_.values.values()) v += .004F;
+        push(renderer);
+        push(judge);
+        expect_same(renderer, judge, 600);
+    }
+}
+
 TEST_F(KeptFramesOfCodes, TimeStaysWithinTheBound) {
     constexpr double kBound = .25;
     Renderer copying{model_, kWidth, kHeight, with_copies(0, kBound)};
@@ -273,6 +287,24 @@ TEST_F(KeptFramesOfCodes, AFrameOfAWindowBeforeIsNotThatOfALaterOne) {
         if (k < 3) continue;
         for (const int thousandths : {600, -400, 600, -1400, -400})
             expect_same(copying, judge, thousandths);
+    }
+}
+
+TEST_F(KeptFramesOfCodes, AFrameOfAnotherLookaheadReadsOtherCodesThoughNoneChanges) {
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    for (int k = 1; k <= 6; ++k) {
+        next_window();
+        push(copying);
+        push(judge);
+    }
+    for (const int lookahead : {0, 2, 1, 2, 0}) {
+        RenderRequest request{.lookahead = lookahead};
+        request.t = latent_.window.end - 2 * kWindow - kWindow / 3;
+        Frame a = copying.make_output(request), b = judge.make_output(request);
+        copying.render(request, a);
+        judge.render(request, b);
+        EXPECT_EQ(a.intensity, b.intensity) << lookahead;
     }
 }
 

@@ -149,6 +149,26 @@ TEST(Renderer, SaysWhatItCanRender) {
     EXPECT_EQ(renderer.readiness(end_of(6), 0), Readiness::later);
 }
 
+TEST(Renderer, OfTimesThatAreNotReadyShowsTheNearestWindow) {
+    const ModelConfig config = config_of(1);
+    for (const int newest : {1, 2, 4, 5, 6, 9}) {
+        Renderer renderer{test::random_model(config, 3), 13, 9};
+        for (int k = 1; k <= newest; ++k) renderer.push(random_latent(config, 9, 13, k));
+        const auto at = [&](SensorTime t) {
+            const RenderRequest request{.t = t};
+            Frame frame = renderer.make_output(request);
+            renderer.render(request, frame);
+            return frame;
+        };
+        const Frame early = at(from_us(0)),
+                    late = at(random_latent(config, 1, 1, newest).window.end + SensorDuration{9});
+        EXPECT_EQ(early.events, newest <= 5 ? 1U : std::uint64_t(newest - 2));
+        EXPECT_EQ(late.events, std::uint64_t(newest));
+        EXPECT_EQ(early.intensity, at(renderer.oldest()).intensity);
+        EXPECT_EQ(late.intensity, at(late.window.end).intensity);
+    }
+}
+
 TEST(Renderer, AFrameArrivedWithTheNewestWindowItMayRead) {
     const ModelConfig config = config_of(1);
     Renderer renderer{test::random_model(config, 3), 13, 9};

@@ -139,6 +139,13 @@ TEST(FrameSchedule, BeginsAnewWithTheCamerasClockAndGoesOnCounting) {
               (std::vector<std::pair<std::int64_t, std::uint64_t>>{{7, 3}, {10'007, 4}}));
 }
 
+TEST(FrameSchedule, ATimeToBeginAtIsOneOfTheFirstClock) {
+    FrameSchedule schedule({100, 1}, from_us(9'000'000));
+    EXPECT_EQ(frames_of(schedule, {{from_us(8'990'000), from_us(9'005'000)}}).size(), 1U);
+    schedule.restart();
+    EXPECT_EQ(frames_of(schedule, {{from_us(7), from_us(15'000)}}).size(), 2U);
+}
+
 TEST(FrameSchedule, ANewRateGoesOnFromTheLastFrame) {
     FrameSchedule schedule({100, 1});
     using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
@@ -172,6 +179,16 @@ TEST(FrameSchedule, ARateCanBeginWhereThereWasNone) {
     schedule.change_rate({250, 1});
     EXPECT_EQ(frames_of(schedule, {{from_us(10'000), from_us(20'000)}}),
               (Frames{{14'000, 1}, {18'000, 2}}));
+}
+
+TEST(FrameSchedule, ARateThatBeginsWithANewClockKnowsNoFrameOfTheOldOne) {
+    FrameSchedule schedule({});
+    using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+    EXPECT_EQ(frames_of(schedule, {{from_us(9'000'000), from_us(9'005'000)}}),
+              (Frames{{9'005'000, 0}}));
+    schedule.restart();
+    schedule.change_rate({200, 1});
+    EXPECT_EQ(frames_of(schedule, {{from_us(7), from_us(6'000)}}), (Frames{{7, 1}, {5'007, 2}}));
 }
 
 TEST(FrameSchedule, ARateThatIsChangedBeforeTheFirstFrameIsTheRate) {

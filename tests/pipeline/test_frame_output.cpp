@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -177,6 +179,40 @@ TEST(FrameOutput, WritesNoFrameThatIsNotFinite) {
 
 TEST(FrameOutput, RefusesAnImpossibleLookahead) {
     for (const int lookahead : {-1, 3}) EXPECT_THROW(FrameOutputByHand{lookahead}, Error);
+}
+
+/// How many frames are written of a live window that came so long ago.
+std::uint64_t frames_of_live(LatencyKeeper& keeper, std::chrono::hours ago) {
+    ToyRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    FrameOutput output(
+        renderer, {&sink}, {.rate = {200'000, 1}, .live = true}, [] { return 0; }, stop, counters,
+        keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(20)};
+    encoded.latent.arrived = std::chrono::steady_clock::now() - ago;
+    output.take(encoded);
+    return sink.count;
+}
+
+TEST(FrameOutput, RendersEverySecondFrameWhereTheEncoderIsBehind) {
+    for (const bool behind : {false, true}) {
+        LatencyKeeper keeper{std::chrono::hours{1}};
+        keeper.window_took(std::chrono::hours{1});
+        keeper.adapt(behind ? 1 : 0);
+        EXPECT_EQ(frames_of_live(keeper, {}), behind ? 3U : 5U) << "of 0, 5, 10, 15 and 20 us";
+    }
+}
+
+TEST(FrameOutput, RendersTheNewestAloneOfAWindowThatIsTooOld) {
+    for (const bool old : {false, true}) {
+        LatencyKeeper keeper{std::chrono::minutes{30}};
+        keeper.frame_took(std::chrono::nanoseconds{1});
+        EXPECT_EQ(frames_of_live(keeper, std::chrono::hours{old ? 1 : 0}), old ? 1U : 5U);
+    }
 }
 
 TEST(FrameOutput, LearnsWhatAFrameTakesAndRendersNoneThatWouldBeLateButTheNewest) {

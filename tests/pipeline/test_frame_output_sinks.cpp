@@ -66,6 +66,23 @@ TEST(FrameOutput, StopsWhenASinkWantsNoMore) {
     EXPECT_EQ(e.sink.count, 3U);
 }
 
+TEST(FrameOutput, StopsWhenOneOfItsSinksWantsNoMore) {
+    ToyRenderer renderer;
+    ToySink first, second;
+    first.wants = 2;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput output(
+        renderer, {&first, &second}, {.rate = {200'000, 1}}, [] { return 0; }, stop, counters,
+        keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(20)};
+    EXPECT_FALSE(output.take(encoded));
+    EXPECT_EQ(second.count, 2U);
+}
+
 /// A sink before which somebody looks at each frame for an hour.
 class HoldingSink final : public Sink {
 public:

@@ -24,6 +24,13 @@ TEST(LatencyKeeper, HalvesTheRateBeforeItMergesAndRestoresItWhenItIsCalm) {
     EXPECT_EQ(keeper.halvings(), 0U);
 }
 
+TEST(LatencyKeeper, WithoutABoundTheRateStaysHoweverManyWindowsWait) {
+    LatencyKeeper keeper{{}};
+    keeper.window_took(60ms);
+    keeper.adapt(100);
+    EXPECT_EQ(keeper.halvings(), 0U);
+}
+
 TEST(LatencyKeeper, TwentyWindowsInARowMustBeCalmBeforeTheRateGoesUp) {
     LatencyKeeper keeper{200ms};
     for (int i = 0; i < 8; ++i) keeper.window_took(60ms);

@@ -52,6 +52,26 @@ TEST(Pipeline, GivesTheSameFramesThreadedAsSequentialForAnySplitOfTheBytes) {
     }
 }
 
+TEST(Pipeline, ALongSilenceHasFramesWhereThatIsAllowedAndOnlyThoseOfAHalvedRateAreRendered) {
+    std::vector<std::byte> bytes;
+    for (const std::int64_t us : {1, 1'200'001}) append_record(bytes, ToyKind::event, us, 0);
+    for (const bool allowed : {false, true}) {
+        PipelineSettings settings = quick_settings();
+        settings.rate = {1'000'000, 1};
+        settings.halvings = 10;
+        settings.allow_silence = allowed;
+        PipelineUnderTest line({bytes}, settings);
+        if (!allowed) {
+            EXPECT_THROW(line.run_sequential(), Error) << "more than a million";
+            continue;
+        }
+        line.run_sequential();
+        for (std::size_t i = 0; i < line.sink.seen.size(); ++i)
+            ASSERT_EQ(line.sink.seen[i].index, 1024 * i);
+        EXPECT_GT(line.sink.seen.back().t_us, 1'200'001 - 1024);
+    }
+}
+
 TEST(Pipeline, TheComparisonSeesOneEventLess) {
     auto events = toy_events(3000);
     PipelineUnderTest all({bytes_of(events)}, quick_settings());
@@ -116,6 +136,20 @@ TEST(Pipeline, StartsAndStopsAThousandTimes) {
         if (round % 4 == 3) line.made().stop();
         line.run();
         ASSERT_EQ(line.sink.closed, 1);
+    }
+}
+
+TEST(Pipeline, HalfARecordIsNoDamageWhereTheEndWasAskedFor) {
+    auto packets = one_frame_per_packet(5);
+    packets[2].pop_back();
+    packets.resize(3);
+    for (const bool asked : {false, true}) {
+        PipelineUnderTest line(packets, quick_settings());
+        line.source.before_read = [&](std::size_t packet) {
+            if (asked && packet == 3) line.made().stop();
+        };
+        line.run();
+        EXPECT_EQ(line.snapshot().damaged[DamageReason::truncated], asked ? 0U : 1U);
     }
 }
 

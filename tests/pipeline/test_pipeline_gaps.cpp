@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <set>
+#include <thread>
+#include <tuple>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -88,6 +93,64 @@ TEST(Pipeline, KnowsNoEventsOfBeforeAGapWhereItsStateBeginsAnew) {
         EXPECT_EQ(encoder.ages[7], 0);
         EXPECT_EQ(encoder.ages[8], 1 / 8.F);
         EXPECT_EQ(encoder.ages[9], reset ? 1 : 2 / 8.F);
+    }
+}
+
+TEST(Pipeline, KnowsNoEventsOfBeforeTheCamerasClockWasReset) {
+    std::vector<std::vector<std::byte>> packets(4);
+    for (const auto& [packet, us, x] :
+         {std::tuple{0, 100'001, 7}, {1, 101'001, 6}, {2, 1, 5}, {3, 2001, 5}})
+        append_record(packets[std::size_t(packet)], ToyKind::event, us, x);
+    ToySource toy(packets);
+    AgeKeeper encoder{7};
+    ToyRenderer renderer;
+    ToySink sink;
+    Pipeline pipeline({toy, encoder, renderer, {&sink}}, quick_settings());
+    pipeline.run_sequential();
+    ASSERT_GE(encoder.ages.size(), 4U);
+    EXPECT_EQ(encoder.ages[1], 1 / 8.F);
+    EXPECT_EQ(encoder.ages[2], 1) << "the new stream's first";
+    EXPECT_EQ(to_us(pipeline.snapshot().begin), 100'000) << "of the run";
+}
+
+/// Is busy with the first event window for as long as it is told.
+class BusyEncoder final : public EncodeStage {
+public:
+    LatentMap make_output() const override { return toy_.make_output(); }
+    void reset() noexcept override { toy_.reset(); }
+
+    std::function<void()> before_first;
+    std::vector<WindowStamp> given;
+
+private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        if (given.empty()) before_first();
+        given.push_back(grid);
+        toy_.encode(grid, latent);
+    }
+    ToyEncoder toy_;
+};
+
+TEST(Pipeline, WindowsThatWaitAreNoneOverAGapWhereStateBeginsAnew) {
+    for (const bool reset : {false, true}) {
+        PipelineSettings settings = quick_settings();
+        settings.reset_on_gap = reset;
+        settings.buffers.grids = 1;
+        settings.latency = std::chrono::hours{1};
+        ToySource toy(one_frame_per_packet(15), true);
+        GappySource source(toy);
+        source.gaps = {10};  // in the window from 9000 us on
+        BusyEncoder encoder;
+        ToyRenderer renderer;
+        ToySink sink;
+        Pipeline pipeline({source, encoder, renderer, {&sink}}, settings);
+        encoder.before_first = [&] {
+            while (pipeline.snapshot().events < 11) std::this_thread::yield();
+        };
+        pipeline.run();
+        const auto after = std::ranges::find(encoder.given, true, &WindowStamp::gap_before);
+        ASSERT_NE(after, encoder.given.end());
+        EXPECT_EQ(to_us(after->window.begin), reset ? 9000 : 1000);
     }
 }
 

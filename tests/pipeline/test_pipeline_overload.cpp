@@ -156,14 +156,14 @@ TEST(Pipeline, ThatACameraWasOpenedAgainIsNotLostWithAPacket) {
     EXPECT_EQ(source.told, 1);
 }
 
-/// Passes on everything, and waits with the first packet's events.
+/// Passes on everything, and waits with the events of one packet, the first.
 struct WaitingFilter final : EventFilter {
     void process(std::vector<Event>&) override {
-        if (calls++ == 0) goes_on.acquire();
+        if (calls++ == waits_at) goes_on.acquire();
         if (calls == 2) second_packet.release();
     }
 
-    int calls = 0;
+    int calls = 0, waits_at = 0;
     std::binary_semaphore goes_on{0}, second_packet{0};
 };
 
@@ -181,6 +181,47 @@ TEST(Pipeline, APacketOfALiveSourceIsNotLostWhereABufferIsFreeByTheTimeItIsThere
     line.run();
     EXPECT_EQ(line.snapshot().lost_packets, 0U);
     EXPECT_EQ(line.snapshot().events, 3U);
+}
+
+TEST(Pipeline, AGapIsToldOnceAndOnlyWhereBytesWereLost) {
+    constexpr std::size_t kBuffers = 2, kReleasedAt = 10, kPackets = 15;
+    for (const bool silent : {false, true}) {
+        auto packets = one_frame_per_packet(kPackets - 1);
+        packets[kReleasedAt - 1].clear();  // a timeout
+        for (std::size_t i = kBuffers; silent && i < kReleasedAt; ++i) packets[i].clear();
+        PipelineSettings settings = quick_settings();
+        settings.buffers.packets = kBuffers;
+        PipelineUnderTest line(packets, settings, true);
+        WaitingFilter filter;
+        line.filter = &filter;
+        line.source.before_read = [&](std::size_t packet) {
+            if (packet < kReleasedAt) return;  // from the third on there is no buffer
+            if (packet == kReleasedAt) filter.goes_on.release();
+            // From now on a packet comes when the one before is in the binner's hands.
+            const std::size_t taken = packet - (kReleasedAt - kBuffers);
+            while (line.made().snapshot().events < taken) std::this_thread::yield();
+        };
+        line.run();
+        EXPECT_EQ(line.snapshot().lost_packets, silent ? 0U : kReleasedAt - 1 - kBuffers);
+        EXPECT_EQ(line.snapshot().gaps, silent ? 0U : 1U);
+    }
+}
+
+TEST(Pipeline, LearnsWhatAPacketTakesAndTakesNoneThatWouldBeLate) {
+    constexpr std::size_t kPackets = 8;
+    PipelineSettings settings = quick_settings();
+    settings.latency = std::chrono::nanoseconds{1};  // any packet that waits would be late
+    PipelineUnderTest line(one_frame_per_packet(kPackets - 1), settings, true);
+    WaitingFilter filter;
+    filter.waits_at = 1;
+    line.filter = &filter;
+    line.source.before_read = [&](std::size_t packet) {
+        while (packet == 2 && line.made().snapshot().events < 2) std::this_thread::yield();
+        if (packet == kPackets) filter.goes_on.release();
+    };
+    line.run();
+    EXPECT_EQ(line.snapshot().events, 3U) << "one waits behind the one that is parsed";
+    EXPECT_EQ(line.snapshot().lost_packets, kPackets - 3);
 }
 
 TEST(Pipeline, WindowsThatWaitGoOnWhenThereIsRoomThoughNothingMoreComes) {
@@ -245,7 +286,9 @@ TEST(Pipeline, WindowsThatWaitWhenTheSourceEndsAreStillEncoded) {
         while (line.made().snapshot().events <= kPackets) std::this_thread::yield();
     };
     line.run();
-    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    const Snapshot s = line.snapshot();
+    EXPECT_EQ(s.lost_packets, 0U);
+    EXPECT_EQ(s.event_windows + s.merged_windows, kPackets + 1) << "each is counted";
     EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1)) << "events";
 }
 
@@ -299,6 +342,29 @@ TEST(Pipeline, ALiveSourceSkipsTheOldestFramesWhenRenderingIsSlow) {
     EXPECT_EQ(s.frames + s.skipped_frames, line.sink.seen.back().index + 1)
         << "each frame of the clock is written or counted, and the newest is written";
     EXPECT_GT(line.sink.seen[6].index, 6U) << "the oldest waiting ones go";
+}
+
+TEST(Pipeline, NoFrameOfALiveSourceKeepsTheEncoderWaitingForABuffer) {
+    PipelineSettings settings = quick_settings();
+    settings.rate = {20'000, 1};  // 20 frames per event window
+    settings.buffers = {64, 2, 2};
+    PipelineUnderTest line(one_frame_per_packet(10), settings, true);
+    std::binary_semaphore begun{0}, waits{0}, goes_on{0};
+    line.sink.before_write = [&](std::uint64_t frame) {
+        if (frame == 6) goes_on.release();
+        if (frame != 5) return;
+        begun.release();
+        waits.acquire();
+    };
+    // While the sixth frame is written one map waits, and the other buffer is being filled.
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 2) begun.acquire();
+        if (calls != 3) return;
+        waits.release();
+        goes_on.acquire();
+    };
+    line.run();
+    EXPECT_GT(line.sink.seen[6].index, 20U) << "the first window's others are left out";
 }
 
 TEST(Pipeline, ALiveLineGoesOnGivingFramesInSilence) {

@@ -145,9 +145,11 @@ HttpControl window_control(const LiveControlsPlan& plan) {
     window.least = std::min(range.least, range.now);
     window.most = std::max(range.most, range.now);
     window.step = range.step;
-    window.set = [value, &changes = plan.changes, slicer = plan.slicer,
-                  put = range.put](double wanted) {
+    window.set = [value, &changes = plan.changes, slicer = plan.slicer, put = range.put,
+                  min_window = plan.min_window](double wanted) {
         SlicerSettings now = slicer;
+        // Windows as short as at the start could be more than can be encoded.
+        if (const SensorDuration least = min_window(); least.count() > 0) now.min_width = least;
         put(now, wanted);
         changes.set_window(now);
         *value = wanted;

@@ -22,6 +22,8 @@ struct LiveControlsPlan {
     std::function<void(double)> set_speed = {};  ///< empty: the source has one speed
     bool live = false;
     SlicerSettings slicer = {};  ///< at the start
+    /// How soon events may end a window now, where --quality has that follow the load; else 0.
+    std::function<SensorDuration()> min_window = [] { return SensorDuration{0}; };
 };
 
 /// The first sink whose frames must be all alike, as it was named.

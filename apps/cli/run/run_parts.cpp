@@ -75,6 +75,7 @@ std::vector<HttpControl> Run::controls() {
         plan.set_speed = [this](double factor) { input_.paced()->set_speed(factor); };
     plan.live = input_.live();
     plan.slicer = slicer_;
+    plan.min_window = [this] { return quality_.state().level.min_window; };
     auto controls = live_controls(plan);
     quality_.follow(controls, changes_);
     return controls;

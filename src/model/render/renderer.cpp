@@ -184,11 +184,10 @@ void Renderer::render_views(const CodeChoice& codes, const FrameGeometry& geomet
 void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
     if (window_.newest() == 0) return;
     FramePosition at = window_.locate(request.t);
-    // A time that is not ready() shows the nearest event window kept: wrong, but never unsafe.
+    // A time that is not ready() shows the nearest event window that can be: wrong, but never
+    // unsafe.
     if (at.k > window_.newest()) at = {window_.newest(), 1};
-    if (at.k == 0)
-        // The oldest k whose z_{k-2} is still kept.
-        at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 3), 0};
+    if (at.k == 0) at = window_.locate(window_.oldest());
     const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
     const CodeChoice codes{at.k,
                            at.fraction,

@@ -174,6 +174,23 @@ TEST_F(LiveControls, MoveTheWindowInTheUnitOfItsRule) {
     EXPECT_EQ(control("window").unit, "events per pixel where most moves");
 }
 
+/// A run that lengthened its windows under load keeps them as long; a viewer changes how much has
+/// to happen in one, not how soon one may end.
+TEST_F(LiveControls, LeaveHowSoonWindowsEndAsTheLoadHasIt) {
+    window_ = "auto,50ms,2ms";
+    LiveControlsPlan plan{settings_, changes_, sensor_};
+    plan.slicer = parse_window(window_);
+    SensorDuration now{0};
+    plan.min_window = [&now] { return now; };
+    const HttpControl window = live_controls(plan).back();
+    ASSERT_EQ(window.name, "window");
+    window.set(1);
+    EXPECT_EQ(window_text(*changes_.take_window()), "auto,50ms,2ms") << "nothing follows the load";
+    now = SensorDuration{20'000};
+    window.set(1);
+    EXPECT_EQ(window_text(*changes_.take_window()), "auto,50ms,20ms");
+}
+
 TEST(HttpName, IsASink) {
     EXPECT_EQ(parse_sink("http:127.0.0.1:8080").kind, SinkKind::http);
     EXPECT_EQ(parse_sink("http:").kind, SinkKind::http);

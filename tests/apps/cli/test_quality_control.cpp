@@ -269,6 +269,12 @@ TEST(QualityControl, EventWindowsAreNoShorterThanLeavesTheEncoderSomeTime) {
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 30ms}));
 }
 
+TEST(QualityControl, CountsTheEventWindowsThatThereAre) {
+    Scene scene;
+    EXPECT_EQ(scene.run(60, 20, 5.1), 0) << "0.6 of the encoder's time, though 50 there may be";
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 20ms}));
+}
+
 TEST(QualityControl, GivesUpFramesOnlyWhereTheLongestEventWindowsAreTooMany) {
     Scene scene;
     scene.run(10, 1000, 9);  // 1.06 of the encoder's time at 50 ms
@@ -309,6 +315,16 @@ TEST(QualityControl, CountsThePaceOnce) {
         control.look(now);
     }
     EXPECT_NEAR(control.measured().frames, expected, .01 * expected);
+    now.pace = 1;
+    for (int i = 0; i < 20; ++i) {
+        now.at += Seconds{1};
+        now.windows += 20;
+        now.frames += 40;
+        now.encode += Seconds{load_of(kCost, control.level(), demand).encode / 2};
+        now.present += Seconds{expected / 2};
+        control.look(now);
+    }
+    EXPECT_NEAR(control.measured().frames, expected / 2, .01 * expected);
 }
 
 TEST(QualityControl, NothingFollowsFromSilence) {
@@ -316,6 +332,21 @@ TEST(QualityControl, NothingFollowsFromSilence) {
     machine.run(5, 1);
     machine.wait(120);
     EXPECT_EQ(machine.run(5, 1), 0);
+    EXPECT_GE(machine.run(4, 4.6), 1) << "but from the load behind it";
+}
+
+TEST(QualityControl, SingleMomentsOfStrainAreNotAddedUp) {
+    Machine machine;
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(machine.run(.5, 1, 1, true), 0) << "windows were merged";
+        EXPECT_EQ(machine.run(1, 1), 0);
+    }
+}
+
+TEST(QualityControl, EncodingMayTakeMostOfItsThreadWhereNoWindowCanBeLonger) {
+    Machine machine;
+    EXPECT_EQ(machine.run(20, 1, 4), 0) << "0.8";
+    EXPECT_GE(machine.run(20, 1, 5), 1) << "1.0";
 }
 
 TEST(QualityControl, ChangesOnlyWhatIsLeftOpen) {

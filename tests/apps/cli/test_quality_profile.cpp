@@ -87,16 +87,22 @@ TEST_F(ProfileCache, MeasuresAnewForAnotherProcessorModelSensorOrProgram) {
 TEST_F(ProfileCache, MeasuresAnewWhatIsDamaged) {
     const std::string file = get().file;
     const std::string whole = test::read_text(file);
-    const std::string encode = "\"encode_ms\": 12.5";
-    ASSERT_THAT(whole, HasSubstr(encode));
-    std::string wrong = whole, negative = whole, type = whole;
-    wrong.replace(wrong.find("\"format\": \"e"), 12, "\"format\": \"E");
-    negative.replace(negative.find(encode), encode.size(), "\"encode_ms\": -12.5");
-    type.replace(type.find(encode), encode.size(), "\"encode_ms\": \"x\"");
+    const auto with = [&whole](const std::string& part, const std::string& other) {
+        EXPECT_THAT(whole, HasSubstr(part));
+        std::string text = whole;
+        return text.replace(text.find(part), part.size(), other);
+    };
+    const std::string encode = "\"encode_ms\": 12.5",
+                      before = whole.substr(0, whole.find("\"costs"));
     int expected = 1;
     for (const std::string& text :
          {std::string{}, whole.substr(0, whole.size() / 2), std::string{"[]"}, std::string{"null"},
-          wrong, negative, type, std::string(1 << 20, '{')}) {
+          std::string(1 << 20, '{'), with("\"format\": \"e", "\"format\": \"E"),
+          with("\"version\": 1", "\"version\": 2"), with(encode, "\"encode_ms\": -12.5"),
+          with(encode, "\"encode_ms\": 0"), with(encode, "\"encode_ms\": 1e9"),
+          with(encode, "\"encode_ms\": \"x\""),
+          with("\"precision\": \"f32\"", "\"precision\": \"auto\""),
+          with("\"engine\": \"fast, AVX2\"", "\"engine\": 7"), before + "\"costs\": []}"}) {
         test::write_text(file, text);
         EXPECT_TRUE(get().measured) << text.substr(0, 60);
         EXPECT_EQ(measured_, ++expected);

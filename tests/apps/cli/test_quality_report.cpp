@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace eventide::app {
 namespace {
 
+using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 TEST(QualityReport, AChangeIsToAHigherOrALowerLevel) {
@@ -29,6 +32,26 @@ TEST(QualityReport, ALevelIsItsSizeItsRateAndItsWindows) {
               "1x 15 frames/s, event windows of 5 ms or more");
     EXPECT_EQ(level_text({1.0 / 3, 0, {}}, 30), "0.333x 30 frames/s");
     EXPECT_EQ(level_text({2, 0, SensorDuration{5000}}, 0), "2x a frame per event window");
+    EXPECT_EQ(level_text({1, 0, {}}, 1000), "1x 1000 frames/s");
+    EXPECT_EQ(level_text({1, 0, {}}, 1500), "1x 1500 frames/s");
+}
+
+TEST(QualityReport, ABudgetIsNamedWhereThereIsOne) {
+    QualityState state;
+    EXPECT_THAT(choice_text(state), Not(HasSubstr("--budget")));
+    state.budget = "8ms";
+    EXPECT_THAT(choice_text(state), HasSubstr("(--budget 8ms)"));
+}
+
+TEST(QualityReport, WhatThereIsNotIsNull) {
+    QualityState state;
+    state.chosen = true;
+    EXPECT_TRUE(quality_json(state, true).at("min_window_ms").is_null());
+    EXPECT_TRUE(quality_json(state, true).at("profile").is_null());
+    state.level.min_window = SensorDuration{2000};
+    state.profile = "some.json";
+    EXPECT_EQ(quality_json(state, true).at("min_window_ms"), 2);
+    EXPECT_EQ(quality_json(state, true).at("profile"), "some.json");
 }
 
 }  // namespace
