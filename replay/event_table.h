@@ -18,6 +18,8 @@ constexpr std::int64_t kNoTimeUs = std::numeric_limits<std::int64_t>::min();
 std::int64_t us_from_seconds(double seconds);
 /// `base_us` added; kNoTimeUs where that is too far away.
 std::int64_t us_from_integer(std::int64_t us, std::int64_t base_us = 0);
+/// False for a row that cannot be read: what is not known is not passed over.
+bool is_before(std::int64_t row_us, std::int64_t t_us);
 
 /// Columns of as many numbers, unchecked.
 struct EventRows {

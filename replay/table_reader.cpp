@@ -13,14 +13,9 @@
 
 namespace eventide {
 
-namespace {
-
-/// Of a row that cannot be read it is not known: what is not known is not passed over.
 bool is_before(std::int64_t row_us, std::int64_t t_us) {
     return row_us != kNoTimeUs && row_us < t_us;
 }
-
-}  // namespace
 
 std::int64_t us_from_seconds(double seconds) {
     const double us = seconds * 1e6;
@@ -53,7 +48,7 @@ void TableReader::find_size(const std::string& path) {
     const std::uint64_t samples = std::min(parts, kSamples);
     for (std::uint64_t i = 0; i < samples; ++i) {
         const std::uint64_t part = samples < 2 ? 0 : i * (parts - 1) / (samples - 1);
-        read_rows(part * kRowsAtATime, batch, damage);
+        if (read_rows(part * kRowsAtATime, damage)) take_rows(batch, damage);
         search.add(batch);
         batch.clear();
     }
@@ -64,7 +59,7 @@ void TableReader::check_order(const std::string& path) {
     constexpr std::size_t kRowsThatTell = 100;
     Batch read, in_order;
     Damage damage;
-    read_rows(0, read, damage);
+    if (read_rows(0, damage)) take_rows(read, damage);
     damage = {};
     EventValidator validator{1, 1};
     for (const Event& event : read.events)
@@ -79,12 +74,9 @@ void TableReader::check_order(const std::string& path) {
 }
 
 /// False where they cannot be read.
-bool TableReader::read_rows(std::uint64_t first, Batch& into, Damage& damage) {
+bool TableReader::read_rows(std::uint64_t first, Damage& damage) {
     const auto n = std::size_t(std::min<std::uint64_t>(kRowsAtATime, events_->rows() - first));
-    if (events_->read(first, n, rows_)) {
-        take_rows(into, damage);
-        return true;
-    }
+    if (events_->read(first, n, rows_)) return true;
     damage.count(DamageReason::bad_compression);
     return false;
 }
@@ -106,33 +98,37 @@ void TableReader::take_rows(Batch& into, Damage& damage) const {
 bool TableReader::read(Batch& into, Damage& damage) {
     damage.count(DamageReason::bad_table, std::exchange(bad_tables_, 0));
     if (next_row_ >= events_->rows()) {
-        if (!images_ || next_image_ >= images_->rows()) return false;
+        if (images_.is_at_end()) return false;
         take_images(std::numeric_limits<std::int64_t>::max(), into, damage);
         return true;
     }
-    read_rows(next_row_, into, damage);
-    next_row_ += std::min<std::uint64_t>(kRowsAtATime, events_->rows() - next_row_);
-    if (!into.events.empty()) take_images(to_us(into.events.back().t), into, damage);
+    if (!read_rows(next_row_, damage)) {
+        next_row_ += std::min<std::uint64_t>(kRowsAtATime, events_->rows() - next_row_);
+        return true;
+    }
+    const bool more_due = !take_images(last_time_us(), into, damage);
+    if (more_due) rows_.resize(rows_until(images_.next_time_us()));
+    take_rows(into, damage);
+    next_row_ += rows_.t_us.size();
     return true;
 }
 
-/// At most some at a time: a part is bounded.
-void TableReader::take_images(std::int64_t until_us, Batch& into, Damage& damage) {
-    constexpr int kAtATime = 8;
-    const bool rest = until_us == std::numeric_limits<std::int64_t>::max();
-    for (int n = 0; images_ && next_image_ < images_->rows() && (!rest || n < kAtATime); ++n) {
-        const std::int64_t t = images_->time_us(next_image_);
-        if (t != kNoTimeUs && t > until_us) return;
-        auto image = t == kNoTimeUs ? std::nullopt : images_->read(next_image_);
-        ++next_image_;
-        if (!image) {
-            damage.count(DamageReason::bad_record);
-            continue;
-        }
-        image->t = from_us(t);
-        image->exposure_begin = image->exposure_end = image->t;
-        into.images.push_back(*std::move(image));
-    }
+bool TableReader::take_images(std::int64_t until_us, Batch& into, Damage& damage) {
+    return images_.take(until_us, header_.width, header_.height, into, damage);
+}
+
+/// Of the rows read.
+std::int64_t TableReader::last_time_us() const {
+    const auto known = std::find_if(rows_.t_us.rbegin(), rows_.t_us.rend(),
+                                    [](std::int64_t t) { return t != kNoTimeUs; });
+    return known == rows_.t_us.rend() ? kNoTimeUs : *known;
+}
+
+/// How many come before the first that is later.
+std::size_t TableReader::rows_until(std::int64_t t_us) const {
+    const auto later =
+        std::ranges::find_if(rows_.t_us, [t_us](std::int64_t t) { return t > t_us; });
+    return std::size_t(later - rows_.t_us.begin());
 }
 
 /// What an index says of a row agrees with the times around it.
@@ -152,9 +148,7 @@ void TableReader::seek(SensorTime t) {
             return is_before(events_->time_us(row), t_us);
         });
     }
-    next_image_ = !images_ ? 0 : partition_row(images_->rows(), [&](std::uint64_t row) {
-        return is_before(images_->time_us(row), t_us);
-    });
+    images_.seek(t_us);
 }
 
 double TableReader::progress() const {

@@ -4,6 +4,7 @@
 #include "replay/data_reader.h"
 #include "replay/event_table.h"
 #include "replay/open_options.h"
+#include "replay/table_images.h"
 
 #include <memory>
 #include <string>
@@ -33,17 +34,19 @@ private:
 
     void find_size(const std::string& path);
     void check_order(const std::string& path);
-    bool read_rows(std::uint64_t first, Batch& into, Damage& damage);
+    bool read_rows(std::uint64_t first, Damage& damage);
     void take_rows(Batch& into, Damage& damage) const;
-    void take_images(std::int64_t until_us, Batch& into, Damage& damage);
+    std::int64_t last_time_us() const;
+    std::size_t rows_until(std::int64_t t_us) const;
+    bool take_images(std::int64_t until_us, Batch& into, Damage& damage);
     bool fits(std::uint64_t row, std::int64_t t_us) const;
 
     StreamHeader header_;
     std::unique_ptr<EventTable> events_;
-    std::unique_ptr<ImageTable> images_;
+    TableImages images_;
     std::vector<std::string> remarks_;
     EventRows rows_;  // of the last part
-    std::uint64_t next_row_ = 0, next_image_ = 0;
+    std::uint64_t next_row_ = 0;
     std::uint64_t bad_tables_ = 0;  // to be counted with the next part
 };
 

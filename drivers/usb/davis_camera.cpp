@@ -85,6 +85,7 @@ SensorInfo DavisCamera::set_up(UsbDevice& device) {
     info.colour_filter = sensor.colour_filter;
     require_same(info, sensor == sensor_);
     sensor_ = sensor;
+    refusals_ = 0;
     write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
     return info;
 }

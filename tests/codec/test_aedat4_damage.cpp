@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <string>
 
 namespace eventide {
@@ -139,6 +140,33 @@ TEST(Aedat4Damage, APacketWhoseTimesLeapCostsWhatLeaptAndNothingThatFollows) {
     EXPECT_TRUE(parsed.data.events == expected);
     EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1000 - kWhole);
     EXPECT_EQ(parsed.damage.total(), 1000 - kWhole);
+}
+
+TEST(Aedat4Damage, AnImageSampleOrTriggerWithATimeOfItsOwnIsNoSilence) {
+    const auto events = random_events(1, 400, kWidth, kHeight, 1'600'000'000'000'000);
+    const std::int64_t end = to_us(events.back().t), far = end + 3'600'000'000;
+    ReferenceImage image;
+    image.pixels = Array2<std::uint16_t>(2, 3);
+    using Put = std::function<void(Batch&, SensorTime)>;
+    for (const Put& put : {Put([&](Batch&batch, SensorTime t) {
+                               image.t = image.exposure_begin = image.exposure_end = t;
+                               batch.images.push_back(image);
+                           }),
+                           Put([](Batch&batch, SensorTime t) {
+                               batch.imu.push_back({t, {}, {}, {}, 0});
+                           }),
+                           Put([](Batch&batch, SensorTime t) {
+                               batch.triggers.push_back({t, Trigger::Kind::rising, 0});
+                           })}) {
+        const auto clock_of = [&](std::int64_t first_us, std::int64_t second_us) {
+            auto batches = in_packets(events, 4);
+            put(batches[1], from_us(first_us));
+            put(batches[3], from_us(second_us));
+            return parse_file(write_file(batches, Aedat4Compression::none)).clock;
+        };
+        EXPECT_EQ(clock_of(far, end + 40'000), from_us(end + 40'000));
+        EXPECT_EQ(clock_of(far, far + 40'000), from_us(far + 40'000));
+    }
 }
 
 TEST(Aedat4Damage, AFirstTimeOfZeroBeforeTimesSince1970IsLeftOut) {

@@ -38,6 +38,37 @@ TEST(Dvs128, AnEventBeforeTheLastIsLeftOutAndCounted) {
     EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
 }
 
+TEST(Dvs128, SoIsAnEdgeBeforeTheLastEvent) {
+    const auto parsed = parse(
+        Dvs128Parser{}, bytes_of<std::uint32_t>({dvs128(0, 0, false, 100), 99U << 16 | 0x8000U}));
+    EXPECT_TRUE(parsed.data.triggers.empty());
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
+}
+
+TEST(Dvs128, AWrapIsNoResetWhateverItsOtherBitsSay) {
+    const auto parsed = parse(
+        Dvs128Parser{},
+        bytes_of<std::uint32_t>({dvs128(0, 0, false, 100), 0xC0000000U, dvs128(0, 0, false, 5)}));
+    EXPECT_EQ(to_us(parsed.data.events.at(1).t), 16384 + 5);
+    EXPECT_TRUE(parsed.data.triggers.empty());
+}
+
+TEST(Dvs128, HalfARecordIsLostInAGapAndCountedAtTheEnd) {
+    const auto bytes =
+        bytes_of<std::uint32_t>({dvs128(0, 0, false, 100), dvs128(1, 0, false, 101)});
+    Dvs128Parser parser;
+    Batch data;
+    parser.parse(std::span{bytes}.first(6), data);
+    parser.resync();
+    parser.parse(std::span{bytes}.last(4), data);
+    EXPECT_THAT(data.events, ElementsAre(event(100, 127, 127, Polarity::on),
+                                         event(101, 126, 127, Polarity::on)));
+    parser.parse(std::span{bytes}.first(3), data);
+    EXPECT_EQ(parser.damaged().total(), 0U);
+    parser.finish(data);
+    EXPECT_EQ(parser.damaged()[DamageReason::truncated], 1U);
+}
+
 TEST(Dvs128, TimeGoesOnThroughAReset) {
     const auto parsed = parse(
         Dvs128Parser{},

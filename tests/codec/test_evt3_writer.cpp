@@ -3,9 +3,14 @@
 #include "src/core/error.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/evt3_checks.h"
+#include "tests/support/error_of.h"
+
+#include <gmock/gmock.h>
 
 namespace eventide::evt3 {
 namespace {
+
+using testing::HasSubstr;
 
 /// Rows full of neighbours, lone events, silences, and triggers between.
 Batch busy_batch(unsigned seed, std::size_t n, std::int64_t t = 1'633'953'690'975'950) {
@@ -56,8 +61,9 @@ Parsed parse_file(const Bytes& file) {
 }
 
 TEST(Evt3, WhatIsWrittenIsReadBack) {
-    for (const std::int64_t first : {std::int64_t(0), std::int64_t(1) << 24, std::int64_t(-5),
-                                     std::int64_t(1'633'953'690'975'950)}) {
+    for (const std::int64_t first :
+         {std::int64_t(0), std::int64_t(1) << 24, std::int64_t(-60'000'000),
+          std::int64_t(1'633'953'690'975'950)}) {
         const Batch batch = busy_batch(1, 20'000, first);
         const Parsed parsed = parse_file(write(batch));
         EXPECT_TRUE(parsed.data.events == batch.events) << first;
@@ -100,6 +106,72 @@ TEST(Evt3Writer, NamesTheSensorAsOpenEbReadsIt) {
     EXPECT_EQ(read_evt_header(file).stream.sensor_name, "IMX636");
 }
 
+TEST(Evt3Writer, NeighboursOfBothPolaritiesAndAPixelTwiceAtATimeAreKept) {
+    Batch batch;
+    for (int x = 0; x < 8; ++x) batch.events.push_back(event(5, x, 1, Polarity(x % 2)));
+    for (const int x : {10, 11, 11, 12, 13, 14, 15}) batch.events.push_back(event(5, x, 1, kOn));
+    EXPECT_TRUE(parse_file(write(batch)).data.events == batch.events);
+}
+
+Trigger edge(std::int64_t t, Trigger::Kind kind = Trigger::Kind::rising) {
+    return {from_us(t), kind, 3};
+}
+
+TEST(Evt3Writer, TriggersBeforeAllEventsOrWithoutAnyKeepTheirTimes) {
+    constexpr std::int64_t kMinute = 60'000'000;  // more than the 24 bits of EVT3 hold
+    Batch before, alone;
+    before.triggers = alone.triggers = {edge(5 * kMinute)};
+    before.events = {event(6 * kMinute, 1, 2)};
+    for (const Batch& batch : {before, alone}) {
+        const Parsed parsed = parse_file(write(batch));
+        EXPECT_TRUE(parsed.data.triggers == batch.triggers);
+        EXPECT_TRUE(parsed.data.events == batch.events);
+    }
+}
+
+TEST(Evt3Writer, TriggersAreWrittenInOrderAndOneBehindLaterEventsAtTheirTime) {
+    Evt3Writer writer;
+    Bytes out;
+    writer.begin({}, out);
+    Batch first, second;
+    first.events = {event(20, 1, 2)};
+    first.triggers = {edge(30), edge(20), edge(10)};
+    second.events = {event(25, 1, 2), event(40, 1, 2)};
+    second.triggers = {edge(15, Trigger::Kind::falling)};
+    writer.write(first, out);
+    writer.write(second, out);
+    writer.finish(out);
+    const Parsed parsed = parse_file(out);
+    EXPECT_THAT(
+        parsed.data.triggers,
+        testing::ElementsAre(edge(10), edge(20), edge(20, Trigger::Kind::falling), edge(30)));
+    EXPECT_EQ(parsed.data.events.size(), 3U);
+}
+
+TEST(Evt3Writer, OfTriggersWithoutEventsOnlySoManyWait) {
+    Evt3Writer writer;
+    Batch many;
+    for (std::int64_t t = 0; t < 70'000; ++t) many.triggers.push_back(edge(t));
+    Bytes out;
+    writer.begin({}, out);
+    writer.write(many, out);
+    EXPECT_GT(out.size(), 4U * (70'000 - 65'536));  // a time and a trigger each
+    writer.finish(out);
+    EXPECT_TRUE(parse_file(out).data.triggers == many.triggers);
+}
+
+TEST(Evt3Writer, ALineOfTheHeaderStaysOne) {
+    StreamHeader header;
+    header.sensor_name = "IMX\n% width 3";
+    header.width = kWidth;
+    header.height = kHeight;
+    Bytes out;
+    Evt3Writer writer;
+    writer.begin(header, out);
+    writer.finish(out);
+    EXPECT_EQ(read_evt_header(out).stream.sensor_name, "IMX % width 3");
+}
+
 TEST(Evt3, ARealRecordingGivesItsNumbers) {
     const Bytes file = read_data_file("evt3_1280x720_5000.raw");
     if (file.empty()) GTEST_SKIP() << "no shared/data/formats";
@@ -117,17 +189,29 @@ TEST(Evt3, ARealRecordingGivesItsNumbers) {
 }
 
 TEST(Evt3, WhatItCannotHoldIsRefusedByName) {
-    Batch far_away, image, pulse, back;
-    far_away.events = {event(1, 2048, 1)};
-    image.images.resize(1);
-    pulse.triggers = {{from_us(1), Trigger::Kind::pulse, 0}};
-    back.events = {event(2, 1, 1), event(1, 1, 1)};
-    for (const Batch& batch : {far_away, image, pulse, back}) {
+    const auto refusal = [](const Batch& batch) {
         Bytes out;
         Evt3Writer writer;
         writer.begin({}, out);
-        EXPECT_THROW(writer.write(batch, out), Error);
-    }
+        return test::error_of([&] { writer.write(batch, out); });
+    };
+    Batch right, below, image, sample, pulse, input, back, leap;
+    right.events = {event(1, 2047, 1), event(1, 2048, 1)};
+    below.events = {event(1, 1, 2048)};
+    image.images.resize(1);
+    sample.imu.resize(1);
+    pulse.triggers = {{from_us(1), Trigger::Kind::pulse, 0}};
+    input.triggers = {{from_us(1), Trigger::Kind::rising, 16}};
+    back.events = {event(2, 1, 1), event(1, 1, 1)};
+    leap.events = {event(0, 1, 1), event(864'000'000'001, 1, 1)};
+    EXPECT_THAT(refusal(right), HasSubstr("an event at 2048, 1;"));
+    EXPECT_THAT(refusal(below), HasSubstr("an event at 1, 2048;"));
+    EXPECT_THAT(refusal(image), HasSubstr("images"));
+    EXPECT_THAT(refusal(sample), HasSubstr("IMU samples"));
+    EXPECT_THAT(refusal(pulse), HasSubstr("from source 0"));
+    EXPECT_THAT(refusal(input), HasSubstr("from source 16"));
+    EXPECT_THAT(refusal(back), HasSubstr("step back"));
+    EXPECT_THAT(refusal(leap), HasSubstr("more than 10 days"));
 }
 
 }  // namespace

@@ -90,6 +90,7 @@ TEST(PlainRecords, AnImageWithATimeOfItsOwnIsNoSilence) {
     const std::int64_t end = to_us(some_data().events.back().t), far = end + 3'600'000'000;
     EXPECT_EQ(clock_of({far, end + 40'000}), from_us(end + 40'000));
     EXPECT_EQ(clock_of({far, far + 40'000}), from_us(far + 40'000));
+    EXPECT_EQ(clock_of({far}), from_us(far)) << "nothing contradicts it";
 }
 
 TEST(PlainRecords, EventsPassTheRulesOfEveryFormat) {

@@ -68,29 +68,58 @@ TEST(DavisExposure, IsAskedForAgainWhereTheCameraRefusesItButNotForEver) {
     }
 }
 
+/// Gives a parser dark frames, each time a second later; it asks for another exposure then.
+class Darkness {
+public:
+    explicit Darkness(const DavisSensor& sensor) : writer_{sensor} {
+        images_.images = dark(sensor).images;
+    }
+    void show(Parser& parser) {
+        std::vector<std::byte> bytes;
+        writer_.write(images_, bytes);
+        Batch parsed;
+        parser.parse(bytes, parsed);
+        for (ReferenceImage& image : images_.images)
+            for (SensorTime* t : {&image.t, &image.exposure_begin, &image.exposure_end})
+                *t += std::chrono::seconds{1};
+    }
+
+private:
+    Batch images_;
+    testing_support::DavisWriter writer_;
+};
+
 TEST(DavisExposure, RefusalsThatLieApartNeverAddUp) {
     PluggedIn camera_side;
-    const DavisSensor sensor = camera_side.model->settings().sensor;
+    Darkness darkness{camera_side.model->settings().sensor};
     DavisCamera camera{at_once()};
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
     const auto parser = camera.make_parser();
-    testing_support::DavisWriter writer{sensor};
     for (int round = 0; round < 2; ++round) {
-        Batch images;
-        images.images = dark(sensor).images;
-        for (ReferenceImage& image : images.images)
-            for (SensorTime* t : {&image.t, &image.exposure_begin, &image.exposure_end})
-                *t += SensorDuration{round * 1'000'000};
-        std::vector<std::byte> bytes;
-        writer.write(images, bytes);
-        Batch parsed;
-        parser->parse(bytes, parsed);  // which asks for another exposure
+        darkness.show(*parser);
         camera_side.bed.stall_control(2);
         for (int i = 0; i < 3; ++i) camera.read(packet);
         std::uint32_t cycles = 0;
         camera_side.bed.look([&] { cycles = camera_side.model->read(davis::kApsExposure); });
         EXPECT_EQ(cycles, 30U * (round == 0 ? 8000 : 16'000));
+    }
+}
+
+TEST(DavisExposure, RefusedForGoodTheCameraIsOpenedAgainEachTime) {
+    PluggedIn camera_side;
+    Darkness darkness{camera_side.model->settings().sensor};
+    DavisOptions options = at_once();
+    options.reconnect = true;
+    DavisCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    const auto parser = camera.make_parser();
+    for (int round = 0; round < 2; ++round) {
+        darkness.show(*parser);
+        camera_side.bed.stall_control(3);
+        for (int i = 0; i < 6; ++i) camera.read(packet);
+        EXPECT_EQ(camera.counters()[CameraCount::reconnects], std::uint64_t(round + 1));
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -53,6 +54,16 @@ inline Batch read_everything(Recording& recording) {
     while (recording.read(packet) == ReadStatus::data) parser->parse(packet.bytes, batch);
     parser->finish(batch);
     return batch;
+}
+
+/// What its parser tells of the time once all was read.
+inline std::optional<SensorTime> clock_at_end(Recording& recording) {
+    Batch unused;
+    const auto parser = recording.make_parser();
+    RawPacket packet;
+    while (recording.read(packet) == ReadStatus::data) parser->parse(packet.bytes, unused);
+    parser->finish(unused);
+    return parser->clock();
 }
 
 inline std::vector<Event> some_events(std::size_t n, std::int64_t first_us = 0,

@@ -103,6 +103,24 @@ TEST(BagRecording, AMosaicSaysItsColourFilter) {
     EXPECT_TRUE(batch.images[0] == expected);
 }
 
+TEST(BagRecording, AnImageWithATimeOfItsOwnIsNoSilence) {
+    const TestFolder folder;
+    const auto events = some_events(300, 1'000'000);
+    const SensorTime end = events.back().t, far = end + std::chrono::hours(1);
+    const SensorDuration frame = std::chrono::milliseconds(40);
+    const auto clock_with = [&](std::initializer_list<SensorTime> images) {
+        BagBytes content = connection(kEvents, "dvs_msgs/EventArray") +
+                           connection(kImages, "sensor_msgs/Image") +
+                           message(kEvents, event_array(128, 128, events));
+        for (const SensorTime t : images)
+            content += message(kImages, image(some_image(t, 128, 128)));
+        return clock_at_end(*open_recording(folder.write("a.bag", bag(chunk("none", content)))));
+    };
+    EXPECT_EQ(clock_with({far, end + frame}), end + frame);
+    EXPECT_EQ(clock_with({far, far + frame}), far + frame);
+    EXPECT_EQ(clock_with({far}), far) << "nothing contradicts it";
+}
+
 TEST(BagRecording, ATopicThatASeekPassesOverIsKnownFromTheIndex) {
     const TestFolder folder;
     const auto events = some_events(100'000);

@@ -1,5 +1,6 @@
 // Images in HDF5 recordings.
 #include "replay/formats.h"
+#include "replay/hdf5/hdf5_recording.h"
 #include "replay/recording_file.h"
 #include "tests/replay/hdf5_files.h"
 #include "tests/replay/hdf5_layouts.h"
@@ -52,6 +53,88 @@ TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
     EXPECT_EQ(batch.images[1].t, from_us(1'100'000));
     recording->seek(from_us(1'120'000));
     EXPECT_EQ(read_everything(*recording).images.size(), 1U);
+}
+
+struct Shown {
+    double t_s;
+    int height = 2;  ///< px
+};
+
+/// DSEC's layout, of a sensor of 4x2 px: `events`, and images 4 px wide.
+void write_with_images(const std::string& path, const std::vector<Event>& events,
+                       const std::vector<Shown>& images) {
+    const Hdf5Made file(path);
+    const test::Columns columns(events);
+    file.column("events/x", columns.x, H5T_STD_U16LE);
+    file.column("events/y", columns.y, H5T_STD_U16LE);
+    file.column("events/t", columns.t, H5T_STD_I64LE);
+    file.column("events/p", columns.p, H5T_STD_U8LE);
+    file.attribute("/", "sensor_resolution", std::vector<std::int64_t>{2, 4});
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const std::string name = "images/image" + std::to_string(100'000'000 + i);
+        const int height = images[i].height;
+        file.array(name, {hsize_t(height), 4}, H5T_NATIVE_UINT8,
+                   pixels_of(4, height, int(i)).data(), H5T_STD_U8LE);
+        file.attribute(name, "timestamp", std::vector{images[i].t_s});
+    }
+}
+
+TEST(Hdf5Images, OneOfAnotherSizeIsDamage) {
+    const TestFolder folder;
+    write_with_images(folder.path("a.h5"), some_events(1000, 1'000'000, 20, 4, 2),
+                      {{1}, {1.001, 3}, {1.002, 1}, {1.003}});
+    const auto recording = open_recording(folder.path("a.h5"));
+    const auto parser = recording->make_parser();
+    Batch batch;
+    RawPacket packet;
+    while (recording->read(packet) == ReadStatus::data) parser->parse(packet.bytes, batch);
+    ASSERT_EQ(batch.images.size(), 2U);
+    expect_pixels(batch.images[1], 4, 2, 3);
+    EXPECT_EQ(parser->damaged()[DamageReason::bad_record], 2U);
+}
+
+TEST(Hdf5Images, WhereEventsAreFewComeAFewAtATimeAndInTheirPlace) {
+    const TestFolder folder;
+    const std::vector<Event> events = some_events(30, 1'000'000, 2'000'000, 4, 2);
+    std::vector<Shown> shown;
+    for (int i = 0; i < 100; ++i) shown.push_back({.5 + .4 * i});
+    write_with_images(folder.path("a.h5"), events, shown);
+    const auto reader = open_hdf5(folder.path("a.h5"), {});
+    Damage damage;
+    std::vector<Event> read;
+    std::vector<ReferenceImage> images;
+    bool more = true;
+    while (more) {
+        Batch part;
+        more = reader->read(part, damage);
+        EXPECT_LE(part.images.size(), 8U);
+        for (const ReferenceImage& image : part.images)
+            EXPECT_TRUE(read.empty() || image.t >= read.back().t) << to_us(image.t);
+        for (const Event& event : part.events)
+            EXPECT_TRUE(images.empty() || event.t >= images.back().t);
+        read.insert(read.end(), part.events.begin(), part.events.end());
+        images.insert(images.end(), part.images.begin(), part.images.end());
+    }
+    EXPECT_TRUE(read == events);
+    ASSERT_EQ(images.size(), 100U);
+    for (int i = 0; i < 100; ++i) expect_pixels(images[std::size_t(i)], 4, 2, i);
+    EXPECT_EQ(damage.total(), 0U);
+}
+
+TEST(Hdf5Images, OneWithAWrongTimeHoldsBackNoneBehindIt) {
+    const TestFolder folder;
+    const std::vector<Event> events = some_events(20'000, 1'000'000, 20, 4, 2);
+    for (const double wrong_s : {-3600., 0., 3600.}) {
+        write_with_images(folder.path("a.h5"), events, {{1.01}, {1.02}, {wrong_s}, {1.04}, {1.05}});
+        const auto reader = open_hdf5(folder.path("a.h5"), {});
+        Batch first;
+        Damage damage;
+        ASSERT_TRUE(reader->read(first, damage));
+        ASSERT_EQ(first.images.size(), 5U) << wrong_s;
+        EXPECT_EQ(first.images[4].t, from_us(1'050'000));
+        EXPECT_EQ(first.images[2].t, from_us(std::int64_t(wrong_s * 1e6)));
+        EXPECT_EQ(clock_at_end(*open_recording(folder.path("a.h5"))), events.back().t) << wrong_s;
+    }
 }
 
 /// A file of a sensor of 32x24 px: a hundred events, which are given back, and `image` among them.
