@@ -128,6 +128,21 @@ TEST_F(Commands, AStreamThatDoesNotSayTheSensorsSizeIsAskedForWhatItsFormatCanSa
     }
 }
 
+TEST_F(Commands, EvaluateOfNothingScoredIsNoSuccess) {
+    // EVREAL scores this sequence from its first second on.
+    ASSERT_EQ(
+        eventide({"simulate", "--seconds", "0.1", "--size", "64x48", "--out", "all/slider_depth/"})
+            .exit_code,
+        0);
+    const Result result = eventide({"evaluate", "all", "--protocol", "evreal"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.output.find("none of its images lies in the cut"), std::string::npos)
+        << result.output;
+    EXPECT_NE(result.error.find("all: expected images in the parts that EVREAL scores, found none"),
+              std::string::npos)
+        << result.error;
+}
+
 TEST_F(Commands, DevicesListsWhatThereIs) {
     const Result result = eventide({"devices", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.error;
