@@ -55,8 +55,9 @@ std::string most_left_out(const std::string& name, const std::string& format, st
 
 }  // namespace
 
-std::string left_out_text(const std::string& name, const std::string& format, std::uint64_t events,
+std::string left_out_text(const std::string& path, const std::string& format, std::uint64_t events,
                           const Damage& damaged) {
+    const std::string name = path == "-" ? "standard input" : path;
     if (std::string most = most_left_out(name, format, events, damaged); !most.empty()) return most;
     const std::uint64_t late = damaged[DamageReason::time_backwards];
     if (late == 0) return {};

@@ -140,11 +140,12 @@ void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOpt
     header.height = of_images.height;
     if (header.width > 0 && header.height > 0) return;
     if (!file.is_seekable())
-        throw Error(ErrorKind::input,
-                    file.path() +
-                        ": expected the size of the sensor, found none in the stream; "
-                        "begin the text with a line \"WIDTH HEIGHT\", or " +
-                        kStateSize);
+        throw Error(
+            ErrorKind::input,
+            file.path() + ": expected the size of the sensor, found none in the stream; " +
+                (header.format == "text" ? "begin the text with a line \"WIDTH HEIGHT\", or "
+                                         : "") +
+                kStateSize);
     scan_geometry(file, stream);
 }
 

@@ -1,6 +1,7 @@
 // The handler only writes a byte; a thread that waits for it does the rest.
 #include "apps/cli/signals.h"
 
+#include "apps/cli/second_signal.h"
 #include "src/core/error.h"
 #include "src/io/system_words.h"
 
@@ -9,6 +10,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <string_view>
 
 namespace eventide::app {
@@ -17,8 +20,14 @@ namespace {
 
 // What a handler can reach.
 std::atomic<int> wake_fd{-1};
-std::atomic<bool> asked{false};
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+std::atomic<std::int64_t> first_ns{0};  // when the first came, of the steady clock; 0: none did
+static_assert(std::atomic<int>::is_always_lock_free &&
+              std::atomic<std::int64_t>::is_always_lock_free);
+
+/// By clock_gettime(2), which a handler may call.
+std::int64_t now_ns() {
+    return std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
+}
 
 void say(std::string_view words) {
     // Not through the logger: it may be what hangs, and no handler may call it.
@@ -27,14 +36,14 @@ void say(std::string_view words) {
 
 extern "C" void handle(int number) {
     const int error = errno;
-    const bool again = asked.exchange(true);
-    // A terminal that closes hangs up more than once: the shell's and the kernel's are one wish.
-    if (again && number == SIGHUP) return;
-    if (again) {
+    const std::int64_t now = now_ns();
+    std::int64_t first = 0;
+    if (first_ns.compare_exchange_strong(first, now)) {
+        [[maybe_unused]] const auto written = write(wake_fd, "s", 1);
+    } else if (!repeats_the_first(number, std::chrono::nanoseconds{now - first})) {
         say("\neventide: stopped at once; files may be incomplete\n");
         _exit(128 + number);
     }
-    [[maybe_unused]] const auto written = write(wake_fd, "s", 1);
     errno = error;
 }
 
@@ -56,7 +65,7 @@ Signals::Signals() {
     read_end_ = ends[0];
     write_end_ = ends[1];
     wake_fd = write_end_;
-    asked = false;
+    first_ns = 0;
     const sigset_t set = watched();
     pthread_sigmask(SIG_BLOCK, &set, &mask_before_);
     Action action{};
@@ -86,13 +95,13 @@ Signals::~Signals() {
 }
 
 bool Signals::stopping() const {
-    return asked;
+    return first_ns != 0;
 }
 
 void Signals::on_stop(std::function<void()> stop) {
     const std::lock_guard lock{mutex_};
     stop_ = std::move(stop);
-    if (asked && stop_) stop_();
+    if (stopping() && stop_) stop_();
 }
 
 void Signals::wait() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace eventide::test {
 namespace {
@@ -113,6 +114,33 @@ TEST_F(Commands, ImagesOfTheCameraCorrectWhatTheModelMissed) {
     EXPECT_EQ(none.exit_code, 0) << none.error;
     EXPECT_NE(none.error.find("--frames use: no image of the camera"), std::string::npos)
         << none.error;
+}
+
+TEST_F(Commands, AStreamThatDoesNotSayTheSensorsSizeIsAskedForWhatItsFormatCanSay) {
+    const std::string state = "found none in the stream; state it with --input-size";
+    const std::string begin = "found none in the stream; begin the text with a line";
+    const std::string evt2{"% evt 2.0\n\0\0\0\x80\0\0\0\x10", 18};
+    for (const auto& [stream, words] :
+         {std::pair{evt2, state}, {std::string{"1000 1 2 1\n2000 1 2 1\n"}, begin}}) {
+        const Result result = eventide({"info", "-"}, {.input = stream});
+        EXPECT_EQ(result.exit_code, 3);
+        EXPECT_NE(result.error.find(words), std::string::npos) << result.error;
+    }
+}
+
+TEST_F(Commands, EvaluateOfNothingScoredIsNoSuccess) {
+    // EVREAL scores this sequence from its first second on.
+    ASSERT_EQ(
+        eventide({"simulate", "--seconds", "0.1", "--size", "64x48", "--out", "all/slider_depth/"})
+            .exit_code,
+        0);
+    const Result result = eventide({"evaluate", "all", "--protocol", "evreal"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.output.find("none of its images lies in the cut"), std::string::npos)
+        << result.output;
+    EXPECT_NE(result.error.find("all: expected images in the parts that EVREAL scores, found none"),
+              std::string::npos)
+        << result.error;
 }
 
 TEST_F(Commands, DevicesListsWhatThereIs) {

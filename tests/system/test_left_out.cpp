@@ -43,6 +43,15 @@ TEST_F(LeftOut, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     expect(0, {"convert", "cut.aedat4", "cut.txt"}, "left out as damaged: truncated 1\n");
 }
 
+TEST_F(LeftOut, StandardInputAndOutputAreCalledByTheirNames) {
+    const Result result = eventide({"convert", "-", "-", "--to-format", "text"},
+                                   {.input = "16 16\n0.2 1 2 1\n0.1 1 2 1\n"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    for (const char* words : {"info: standard output: wrote 1 event",
+                              "warning: standard input: 1 event (50 %) left out"})
+        EXPECT_NE(result.error.find(words), std::string::npos) << words << "\n" << result.error;
+}
+
 TEST_F(LeftOut, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
     std::string text = "16 16\n";  // the first rows are in order, and those behind go back
     for (int i = 0; i < 5000; ++i)

@@ -43,8 +43,9 @@ const Format* target_format(const std::string& file, const std::string& name) {
     return format;
 }
 
-void say(const std::string& source, const std::string& source_format, const std::string& file,
+void say(const std::string& source, const std::string& source_format, const std::string& target,
          const ConvertReport& report) {
+    const std::string file = target == "-" ? "standard output" : target;
     if (report.reader != PipeReader::takes)
         spdlog::info("{}: {}", file, text_of(report.reader));
     else

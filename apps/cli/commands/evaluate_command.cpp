@@ -248,6 +248,9 @@ int EvaluateCommand::run(Program& program) {
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);
     write(report, program.signals);
+    if (protocol_ == Protocol::evreal && report.overall.frames == 0)
+        throw Error(ErrorKind::input,
+                    inputs_[0] + ": expected images in the parts that EVREAL scores, found none");
     write_report_figures(report);
     if (!calibrated_.empty()) calibrate(report, settings);
     return exit_done;

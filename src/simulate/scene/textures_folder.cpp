@@ -46,24 +46,26 @@ GreyImage read_grey_image(const fs::path& file) {
     return image_of(checked_image(file, cv::IMREAD_GRAYSCALE));
 }
 
-GreyImage read_colour_image(const fs::path& file, int channel) {
-    cv::Mat plane;
-    cv::extractChannel(checked_image(file, cv::IMREAD_COLOR), plane, channel);
-    return image_of(plane);
+std::array<GreyImage, 3> read_colour_image(const fs::path& file) {
+    const cv::Mat read = checked_image(file, cv::IMREAD_COLOR);
+    const auto plane = [&read](int channel) {
+        cv::Mat one;
+        cv::extractChannel(read, one, channel);
+        return image_of(one);
+    };
+    return {plane(0), plane(1), plane(2)};
 }
 
 std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder(
     const fs::path& folder, int longest) {
-    std::array<std::shared_ptr<const TextureLibrary>, 3> libraries;
-    for (int channel = 0; channel < 3; ++channel) {
-        auto library = std::make_shared<TextureLibrary>();
-        for (const fs::path& file : image_files(folder)) {
-            const GreyImage image = read_colour_image(file, channel);
-            library->add(longest > 0 ? shrunk(image, longest) : image);
-        }
-        libraries[std::size_t(channel)] = std::move(library);
+    std::array<std::shared_ptr<TextureLibrary>, 3> libraries;
+    for (auto& library : libraries) library = std::make_shared<TextureLibrary>();
+    for (const fs::path& file : image_files(folder)) {
+        const std::array<GreyImage, 3> image = read_colour_image(file);
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            libraries[channel]->add(longest > 0 ? shrunk(image[channel], longest) : image[channel]);
     }
-    return libraries;
+    return {libraries[0], libraries[1], libraries[2]};
 }
 
 std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int longest) {

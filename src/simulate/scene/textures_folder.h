@@ -18,8 +18,8 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& fold
 /// Grey, as stored (gamma-encoded). Throws Error (input) for a file that is no image.
 GreyImage read_grey_image(const std::filesystem::path& file);
 
-/// The same of one colour: 0 blue, 1 green, 2 red.
-GreyImage read_colour_image(const std::filesystem::path& file, int channel);
+/// The same of each colour: blue, green, red.
+std::array<GreyImage, 3> read_colour_image(const std::filesystem::path& file);
 
 /// All images of a folder, of which each library holds one colour: blue, green, red.
 std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder(

@@ -1,5 +1,6 @@
 // Signals on threads that nobody of ours made.
 #include "apps/cli/commands/command_files.h"
+#include "apps/cli/second_signal.h"
 #include "apps/cli/signals.h"
 #include "src/core/error.h"
 #include "tests/system/process.h"
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <thread>
 
@@ -91,14 +93,24 @@ void interrupt_twice_while_the_stop_hangs() {
                           }};
     foreign.interrupt();
     hanging.get_future().wait();
-    foreign.interrupt();
-    std::promise<void>{}.get_future().wait();
+    for (;;) foreign.interrupt();  // until one comes long enough after the first
 }
 
 TEST(SignalsOnAnyThreadDeathTest, TheSecondQuitsEvenIfTheStopHangs) {
     testing::GTEST_FLAG(death_test_style) = "threadsafe";
     EXPECT_EXIT(interrupt_twice_while_the_stop_hangs(), testing::ExitedWithCode(128 + SIGINT),
                 "stopped at once");
+}
+
+TEST(SecondSignal, ComesSomeTimeAfterTheFirst) {
+    using std::chrono::nanoseconds;
+    for (const int number : {SIGINT, SIGTERM}) {
+        // timeout(1) sends two, one right behind the other, for one wish.
+        EXPECT_TRUE(repeats_the_first(number, nanoseconds{0}));
+        EXPECT_TRUE(repeats_the_first(number, kOneWish - nanoseconds{1}));
+        EXPECT_FALSE(repeats_the_first(number, kOneWish));
+    }
+    EXPECT_TRUE(repeats_the_first(SIGHUP, std::chrono::hours{1})) << "a terminal closes once";
 }
 
 TEST(SignalsOnAnyThread, AfterwardsAllIsAsBefore) {
