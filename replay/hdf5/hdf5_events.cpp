@@ -84,9 +84,11 @@ public:
 
     std::optional<std::uint64_t> look_up(std::int64_t t_us) override {
         if (!index_ || index_->rows() == 0) return {};
-        const std::int64_t ms = t_us <= offset_us_ ? 0 : (t_us - offset_us_) / 1000;
-        if (std::uint64_t(ms) >= index_->rows()) return {};
-        const auto row = index_->number<std::int64_t>(std::uint64_t(ms));
+        // Unsigned, as a file may say an offset of any 64 bits.
+        const std::uint64_t us =
+            t_us <= offset_us_ ? 0 : std::uint64_t(t_us) - std::uint64_t(offset_us_);
+        if (us / 1000 >= index_->rows()) return {};
+        const auto row = index_->number<std::int64_t>(us / 1000);
         return row ? std::optional(std::uint64_t(*row)) : std::nullopt;
     }
 

@@ -4,6 +4,7 @@
 #include "src/model/mirrors.h"
 #include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
+#include "tests/support/error_of.h"
 #include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
@@ -180,8 +181,11 @@ TEST_F(SelfEnsemble, GoesOnFromAState) {
     }
     EXPECT_EQ(first.latent.values, second.latent.values);
     EXPECT_EQ(first.latent.mirrored[0].values, second.latent.mirrored[0].values);
-    EXPECT_THROW(one.encoder.restore(first.encoder.state(), "state"), Error);
-    EXPECT_THROW(first.encoder.restore(one.encoder.state(), "state"), Error);
+    const auto refused = [](Network& by, const Network& from) {
+        return error_of([&] { by.encoder.restore(from.encoder.state(), "s"); }, ErrorKind::input);
+    };
+    EXPECT_EQ(refused(one, first), "s: state of a self-ensemble: expected 1 network, found 2");
+    EXPECT_EQ(refused(first, one), "s: state of a self-ensemble: expected 2 networks, found 1");
 }
 
 TEST_F(SelfEnsemble, HasOneTwoOrFourViews) {

@@ -89,7 +89,7 @@ Outcome run(const std::string& path, const PipelineSettings& settings, How how) 
 class RealRecordings : public testing::TestWithParam<const char*> {
 protected:
     std::string path() const {
-        return std::string{EVENTIDE_SOURCE_DIR} + "/../shared/data/" + GetParam();
+        return std::string{EVENTIDE_SOURCE_DIR "/../shared/data/"} + GetParam();
     }
     void SetUp() override {
         if (!std::filesystem::exists(path())) GTEST_SKIP() << "no recordings here: " << path();

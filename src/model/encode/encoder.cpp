@@ -2,6 +2,7 @@
 #include "src/model/encode/encoder.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
 #include "src/model/mirrors.h"
@@ -114,6 +115,11 @@ void Encoder::restore(const TensorFile& state, const std::string& name) {
         const std::string value = found == state.metadata.end() ? "nothing" : found->second;
         if (value != expected) refuse_state(name, "state's '" + key + "'", expected, value);
     }
+    const std::size_t each = mine.tensors.size() / cores_.size(),
+                      kept = state.tensors.size() / each;
+    if (kept != cores_.size() && state.tensors.size() == kept * each)
+        refuse_state(name, "state of a self-ensemble", counted(cores_.size(), "network"),
+                     std::to_string(kept));
     for (const auto& [key, expected] : mine.tensors) {
         const auto found = state.tensors.find(key);
         if (found == state.tensors.end() || found->second.shape != expected.shape)
