@@ -182,7 +182,8 @@ TEST_F(SelfEnsemble, GoesOnFromAState) {
     EXPECT_EQ(first.latent.values, second.latent.values);
     EXPECT_EQ(first.latent.mirrored[0].values, second.latent.mirrored[0].values);
     const auto refused = [](Network& by, const Network& from) {
-        return error_of([&] { by.encoder.restore(from.encoder.state(), "s"); }, ErrorKind::input);
+        return test::error_of([&] { by.encoder.restore(from.encoder.state(), "s"); },
+                              ErrorKind::input);
     };
     EXPECT_EQ(refused(one, first), "s: state of a self-ensemble: expected 1 network, found 2");
     EXPECT_EQ(refused(first, one), "s: state of a self-ensemble: expected 2 networks, found 1");
