@@ -3,6 +3,7 @@
 
 #include "src/core/damage_text.h"
 #include "src/core/number_text.h"
+#include "src/io/stream_name.h"
 
 #include <cstdio>
 
@@ -57,7 +58,7 @@ std::string most_left_out(const std::string& name, const std::string& format, st
 
 std::string left_out_text(const std::string& path, const std::string& format, std::uint64_t events,
                           const Damage& damaged) {
-    const std::string name = path == "-" ? "standard input" : path;
+    const std::string name = input_name(path);
     if (std::string most = most_left_out(name, format, events, damaged); !most.empty()) return most;
     const std::uint64_t late = damaged[DamageReason::time_backwards];
     if (late == 0) return {};

@@ -2,6 +2,7 @@
 #include "replay/stream/byte_file.h"
 
 #include "src/core/error.h"
+#include "src/io/stream_name.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>
@@ -26,7 +27,7 @@ namespace {
 }  // namespace
 
 ByteFile::ByteFile(const std::string& path, std::function<void()> while_waiting)
-    : path_(path == "-" ? "standard input" : path), while_waiting_(std::move(while_waiting)) {
+    : path_(input_name(path)), while_waiting_(std::move(while_waiting)) {
     owned_ = path != "-";
     // Not blocking: a named pipe would hold the call until someone writes to it.
     fd_ = owned_ ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : STDIN_FILENO;

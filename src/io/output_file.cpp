@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/io/file_identity.h"
 #include "src/io/file_lock.h"
+#include "src/io/stream_name.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>
@@ -30,9 +31,7 @@ void OutputFile::fail(const char* doing, int error) const {
 }
 
 OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
-    : name_{path == "-" ? "standard output" : path.string()},
-      give_up_{options.give_up},
-      unread_{options.unread} {
+    : name_{output_name(path.string())}, give_up_{options.give_up}, unread_{options.unread} {
     struct stat facts {};
     if (const auto descriptor = descriptor_named(path)) {
         owned_ = false;

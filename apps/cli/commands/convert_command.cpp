@@ -14,6 +14,7 @@
 #include "src/core/number_text.h"
 #include "src/io/held_pipes.h"
 #include "src/io/output_file.h"
+#include "src/io/stream_name.h"
 
 #include <spdlog/spdlog.h>
 
@@ -45,7 +46,7 @@ const Format* target_format(const std::string& file, const std::string& name) {
 
 void say(const std::string& source, const std::string& source_format, const std::string& target,
          const ConvertReport& report) {
-    const std::string file = target == "-" ? "standard output" : target;
+    const std::string file = output_name(target);
     if (report.reader != PipeReader::takes)
         spdlog::info("{}: {}", file, text_of(report.reader));
     else

@@ -16,6 +16,7 @@
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/io/stream_name.h"
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -67,7 +68,7 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.live = plan.live;
     stream.give_up = plan.questions.stopping;
     stream.unread = plan.questions.unread;
-    const std::string name = path == "-" ? "standard output" : path;
+    const std::string name = output_name(path);
     if (!plan.constant_rate && is_y4m(format))
         spdlog::warn(
             "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "

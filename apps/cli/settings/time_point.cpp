@@ -6,6 +6,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
+#include "src/io/stream_name.h"
 
 #include <filesystem>
 #include <system_error>
@@ -25,8 +26,8 @@ std::string show_time_point(const TimePoint& point) {
     return point.absolute ? "@" + std::to_string(point.value.count()) : show_duration(point.value);
 }
 
-Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
-                           std::string help) {
+Setting time_point_setting(std::string key, std::optional<TimePoint>& value,
+                           const std::string& word, std::string help) {
     return parsed_setting<std::optional<TimePoint>>(
         std::move(key), value, "TIME", std::move(help),
         [word](const std::string& text) {
@@ -51,7 +52,7 @@ bool is_read_once(const std::string& path) {
 SensorTime TimePointReader::first_time() const {
     if (is_read_once(path_))
         throw Error(ErrorKind::usage,
-                    (path_ == "-" ? "standard input" : path_) +
+                    input_name(path_) +
                         " cannot be read twice to find its first event; expected times as "
                         "@MICROSECONDS of the sensor");
     const auto recording = open_recording(path_, options_);

@@ -21,8 +21,8 @@ TimePoint parse_time_point(const std::string& text);
 std::string show_time_point(const TimePoint& point);
 
 /// `word` stands for an empty value.
-Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
-                           std::string help);
+Setting time_point_setting(std::string key, std::optional<TimePoint>& value,
+                           const std::string& word, std::string help);
 
 /// Standard input and named pipes: what was read is gone.
 bool is_read_once(const std::string& path);
