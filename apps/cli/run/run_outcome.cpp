@@ -31,12 +31,12 @@ int Run::report(const RunProgress& end) const {
                                               end_counters.events, end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);
-    const std::size_t kept = outputs_.states() != nullptr ? outputs_.states()->kept() : 0;
-    if (outputs_.states() != nullptr && kept < states_at_.size() && !program_.signals.stopping())
-        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[kept] +
+    const StateFolder* const states = outputs_.states();
+    if (states != nullptr && states->kept() < states_at_.size() && !program_.signals.stopping())
+        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states->kept()] +
                                           ": expected a time before the run's last event, found "
                                           "one after it; wrote " +
-                                          counted(kept, "state"));
+                                          counted(states->kept(), "state"));
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
