@@ -36,7 +36,9 @@ std::string fraction_of(const py::handle& number) {
     if (!std::isfinite(value)) return std::to_string(value);
     constexpr int kLargestDenominator = 1'000'000;
     const py::object fraction = py::module_::import("fractions").attr("Fraction")(value);
-    return py::str(fraction.attr("limit_denominator")(kLargestDenominator));
+    const py::object simple = fraction.attr("limit_denominator")(kLargestDenominator);
+    if (!py::bool_(simple)) return py::str(number);  // 0, or nearly: refused as it was written
+    return py::str(simple);
 }
 
 }  // namespace

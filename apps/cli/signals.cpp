@@ -1,8 +1,8 @@
 // The handler only writes a byte; a thread that waits for it does the rest.
 #include "apps/cli/signals.h"
 
-#include "apps/cli/second_signal.h"
 #include "src/core/error.h"
+#include "src/core/second_signal.h"
 #include "src/io/system_words.h"
 
 #include <fcntl.h>

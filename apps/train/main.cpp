@@ -1,10 +1,14 @@
 // eventide-train: makes the models that eventide runs. docs/training.md tells how.
 #include "apps/train/trainer.h"
 #include "src/core/error.h"
+#include "src/core/second_signal.h"
 #include "src/io/output_file.h"
 #include "src/simulate/scene/texture_pack.h"
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <iostream>
 #include <sstream>
 
@@ -13,11 +17,19 @@ namespace {
 using namespace eventide;
 
 std::atomic<bool> stop_asked{false};
+std::atomic<std::int64_t> first_ns{0};  // when the first signal came; 0: none did
 
-/// The first asks for a clean end; the second finds the default and quits.
+/// The first asks for a clean end; a second wish to stop ends it at once.
 void ask_to_stop(int signal) {
-    stop_asked = true;
-    std::signal(signal, SIG_DFL);
+    using namespace std::chrono;
+    const std::int64_t now = nanoseconds{steady_clock::now().time_since_epoch()}.count();
+    std::int64_t first = 0;
+    if (first_ns.compare_exchange_strong(first, now)) {
+        stop_asked = true;
+    } else if (!repeats_the_first(signal, nanoseconds{now - first})) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
 }
 
 std::shared_ptr<const TextureLibrary> library(const std::string& pack, std::uint64_t seed) {

@@ -9,6 +9,7 @@
 namespace eventide {
 
 std::ifstream open_to_read(const std::filesystem::path& path, ErrorKind kind) {
+    if (path.empty()) throw Error(kind, "expected the name of a file, found ''");
     std::error_code none;
     if (std::filesystem::is_directory(path, none))
         throw Error(kind, path.string() + ": expected a file, found a folder");

@@ -32,6 +32,11 @@ TEST_F(InputFile, TextThatNeverEndsIsRefused) {
                   std::string{endless} + ": expected at most 4 MiB of text, found more");
 }
 
+TEST_F(InputFile, AnEmptyNameIsSaid) {
+    EXPECT_EQ(test::error_of([] { read_text_file("", ErrorKind::usage); }, ErrorKind::usage),
+              "expected the name of a file, found ''");
+}
+
 TEST_F(InputFile, NumbersAreReadOfFilesAlone) {
     test::write_text(temp_ / "four", "1234");
     EXPECT_EQ(read_bytes_of_file(temp_ / "four").size(), 4U);

@@ -224,6 +224,32 @@ TEST(ModelLine, AnImageInTheFirstWindowOfANewClockCorrects) {
     }
 }
 
+/// Neither the state nor codes nor kept frames of the old clock's stream are left.
+TEST(ModelLine, FramesOfANewClockAreThoseOfAStreamOfItsOwn) {
+    const Model model = test::random_model(small_config(), 1);
+    const auto own = moving_scene(300);
+    std::vector<std::byte> both;
+    for (int ms = 1; ms < 200; ++ms)
+        append_record(both, ToyKind::event, 40'000'000 + 1000 * ms, ms % kWidth, ms % kHeight);
+    both.insert(both.end(), own.begin(), own.end());
+    for (const int lookahead : {0, 2}) {
+        SCOPED_TRACE(lookahead);
+        ModelRun alone({own}, model, settings_for(model, lookahead), {}),
+            second({both}, model, settings_for(model, lookahead), {});
+        alone.pipeline.run_sequential();
+        second.pipeline.run_sequential();
+        const auto& expected = alone.sink.seen;
+        ASSERT_GT(second.sink.seen.size(), expected.size());
+        const auto first = second.sink.seen.size() - expected.size();
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const ToySink::Seen& found = second.sink.seen[first + i];
+            ASSERT_EQ(found.t_us, expected[i].t_us);
+            EXPECT_EQ(found.intensity, expected[i].intensity) << "at " << found.t_us << " us";
+            EXPECT_EQ(found.sigma, expected[i].sigma) << "at " << found.t_us << " us";
+        }
+    }
+}
+
 TEST(ModelLine, EveryImageOfARecordingCorrectsAlsoWhereThereAreMoreThanWindowsHold) {
     const Model model = test::random_model(small_config(), 1);
     constexpr int kImages = 900;

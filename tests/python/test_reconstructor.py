@@ -117,6 +117,8 @@ class Frames(RecordedTest):
         self.assertEqual([f.t for f in seldom.frames()][1:], [1001 * 10**6 - 1])
         with self.assertRaisesRegex(eventide.UsageError, "frame rate"):
             self.reconstructor(fps=float("nan"))
+        with self.assertRaisesRegex(eventide.UsageError, "frame rate '1e-09'"):
+            self.reconstructor(fps=1e-9)
         for fps in (True, None, [30]):
             with self.assertRaisesRegex(TypeError, "fps: expected int, float or str"):
                 self.reconstructor(fps=fps)

@@ -1,8 +1,8 @@
 // Signals on threads that nobody of ours made.
 #include "apps/cli/commands/command_files.h"
-#include "apps/cli/second_signal.h"
 #include "apps/cli/signals.h"
 #include "src/core/error.h"
+#include "src/core/second_signal.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace eventide::app {
+namespace eventide {
 
 /// How long SIGINT and SIGTERM count as the first signal.
 inline constexpr std::chrono::milliseconds kOneWish{500};
@@ -17,4 +17,4 @@ inline bool repeats_the_first(int number, std::chrono::nanoseconds after_the_fir
     return number == SIGHUP || after_the_first < kOneWish;
 }
 
-}  // namespace eventide::app
+}  // namespace eventide
