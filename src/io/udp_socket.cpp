@@ -69,8 +69,12 @@ UdpName UdpName::parse(const std::string& text) {
     if (!number_in<std::uint16_t>(name.port))
         throw Error(ErrorKind::usage,
                     "udp:" + text + ": expected a port from 0 to 65535, found '" + name.port + "'");
-    if (name.host.starts_with('[') && name.host.ends_with(']'))
-        name.host = name.host.substr(1, name.host.size() - 2);
+    const bool brackets = name.host.starts_with('[') && name.host.ends_with(']');
+    if (brackets) name.host = name.host.substr(1, name.host.size() - 2);
+    // Those of an IPv6 address alone.
+    if (name.host.find_first_of("[]") != name.host.npos ||
+        (brackets && name.host.find(':') == name.host.npos))
+        refuse(text);
     for (std::size_t at = question + 1; at < text.size();) {
         const std::size_t end = std::min(text.find('&', at), text.size());
         const std::string pair = text.substr(at, end - at);

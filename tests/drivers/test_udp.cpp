@@ -179,7 +179,8 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
         return "nothing was refused";
     };
     for (const std::string name :
-         {"127.0.0.1:0", "//127.0.0.1", "//:0", "//127.0.0.1:0?size", "//127.0.0.1:0?=4x4"})
+         {"127.0.0.1:0", "//127.0.0.1", "//:0", "//127.0.0.1:0?size", "//127.0.0.1:0?=4x4",
+          "//[]:9999", "//[127.0.0.1]:9999", "//[[::1]]:9999", "//[::1:9999"})
         EXPECT_THAT(refusal(name, ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
     EXPECT_THAT(refusal("//127.0.0.1:0", ErrorKind::usage), HasSubstr("?size=640x480"));
     for (const std::string size : {"4", "0x4", "4x0", "4097x4", "4x4097"})
