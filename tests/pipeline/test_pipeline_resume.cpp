@@ -51,8 +51,7 @@ struct GridRun {
 class PipelineResume : public testing::TestWithParam<bool> {};
 
 TEST_P(PipelineResume, GridsAreThoseOfOneRun) {
-    // A second with an event in most milliseconds: pixels are silent for longer than the windows
-    // that one event opens, so that their ages matter.
+    // In bursts and pauses, so that pixels have had their last events in different windows.
     const std::vector<Event> events = toy_events(3000);
     const SensorTime middle = events[events.size() / 2].t;
     std::optional<PipelineState> kept;
