@@ -10,8 +10,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <chrono>
-#include <cstdint>
 #include <string_view>
 
 namespace eventide::app {
@@ -20,14 +18,8 @@ namespace {
 
 // What a handler can reach.
 std::atomic<int> wake_fd{-1};
-std::atomic<std::int64_t> first_ns{0};  // when the first came, of the steady clock; 0: none did
-static_assert(std::atomic<int>::is_always_lock_free &&
-              std::atomic<std::int64_t>::is_always_lock_free);
-
-/// By clock_gettime(2), which a handler may call.
-std::int64_t now_ns() {
-    return std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
-}
+FirstSignal first_signal;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void say(std::string_view words) {
     // Not through the logger: it may be what hangs, and no handler may call it.
@@ -36,13 +28,16 @@ void say(std::string_view words) {
 
 extern "C" void handle(int number) {
     const int error = errno;
-    const std::int64_t now = now_ns();
-    std::int64_t first = 0;
-    if (first_ns.compare_exchange_strong(first, now)) {
-        [[maybe_unused]] const auto written = write(wake_fd, "s", 1);
-    } else if (!repeats_the_first(number, std::chrono::nanoseconds{now - first})) {
-        say("\neventide: stopped at once; files may be incomplete\n");
-        _exit(128 + number);
+    switch (first_signal.take(number)) {
+        case StopWish::first: {
+            [[maybe_unused]] const auto written = write(wake_fd, "s", 1);
+            break;
+        }
+        case StopWish::repeated:
+            break;
+        case StopWish::second:
+            say("\neventide: stopped at once; files may be incomplete\n");
+            _exit(128 + number);
     }
     errno = error;
 }
@@ -65,7 +60,7 @@ Signals::Signals() {
     read_end_ = ends[0];
     write_end_ = ends[1];
     wake_fd = write_end_;
-    first_ns = 0;
+    first_signal.forget();
     const sigset_t set = watched();
     pthread_sigmask(SIG_BLOCK, &set, &mask_before_);
     Action action{};
@@ -95,7 +90,7 @@ Signals::~Signals() {
 }
 
 bool Signals::stopping() const {
-    return first_ns != 0;
+    return first_signal.came();
 }
 
 void Signals::on_stop(std::function<void()> stop) {

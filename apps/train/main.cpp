@@ -6,7 +6,6 @@
 #include "src/simulate/scene/texture_pack.h"
 
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <iostream>
@@ -17,19 +16,14 @@ namespace {
 using namespace eventide;
 
 std::atomic<bool> stop_asked{false};
-std::atomic<std::int64_t> first_ns{0};  // when the first signal came; 0: none did
+FirstSignal first_signal;
 
 /// The first asks for a clean end; a second wish to stop ends it at once.
 void ask_to_stop(int signal) {
-    using namespace std::chrono;
-    const std::int64_t now = nanoseconds{steady_clock::now().time_since_epoch()}.count();
-    std::int64_t first = 0;
-    if (first_ns.compare_exchange_strong(first, now)) {
-        stop_asked = true;
-    } else if (!repeats_the_first(signal, nanoseconds{now - first})) {
-        std::signal(signal, SIG_DFL);
-        std::raise(signal);
-    }
+    stop_asked = true;
+    if (first_signal.take(signal) != StopWish::second) return;
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
 }
 
 std::shared_ptr<const TextureLibrary> library(const std::string& pack, std::uint64_t seed) {

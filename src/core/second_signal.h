@@ -3,7 +3,9 @@
 
 #include <signal.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 
 namespace eventide {
 
@@ -16,5 +18,30 @@ inline constexpr std::chrono::milliseconds kOneWish{500};
 inline bool repeats_the_first(int number, std::chrono::nanoseconds after_the_first) {
     return number == SIGHUP || after_the_first < kOneWish;
 }
+
+/// What a signal to stop says to a handler that has seen those before it.
+enum class StopWish { first, repeated, second };
+
+/// Remembers when the first signal came. take() and came() may be called from handlers and from any
+/// thread.
+class FirstSignal {
+public:
+    StopWish take(int number) noexcept {
+        using namespace std::chrono;
+        const std::int64_t now = nanoseconds{steady_clock::now().time_since_epoch()}.count();
+        std::int64_t first = kNone;
+        if (first_.compare_exchange_strong(first, now)) return StopWish::first;
+        return repeats_the_first(number, nanoseconds{now - first}) ? StopWish::repeated
+                                                                   : StopWish::second;
+    }
+    bool came() const noexcept { return first_ != kNone; }
+    void forget() noexcept { first_ = kNone; }
+
+private:
+    static constexpr std::int64_t kNone = 0;
+    static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // for handlers
+
+    std::atomic<std::int64_t> first_{kNone};  // ns of the steady clock, which handlers may read
+};
 
 }  // namespace eventide

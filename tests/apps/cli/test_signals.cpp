@@ -113,6 +113,17 @@ TEST(SecondSignal, ComesSomeTimeAfterTheFirst) {
     EXPECT_TRUE(repeats_the_first(SIGHUP, std::chrono::hours{1})) << "a terminal closes once";
 }
 
+TEST(FirstSignal, WhatComesAtOnceAfterItRepeatsIt) {
+    FirstSignal signal;
+    EXPECT_FALSE(signal.came());
+    EXPECT_EQ(signal.take(SIGTERM), StopWish::first);
+    EXPECT_TRUE(signal.came());
+    EXPECT_EQ(signal.take(SIGHUP), StopWish::repeated);
+    signal.forget();
+    EXPECT_FALSE(signal.came());
+    EXPECT_EQ(signal.take(SIGHUP), StopWish::first);
+}
+
 TEST(SignalsOnAnyThread, AfterwardsAllIsAsBefore) {
     using Action = struct sigaction;
     Action before{}, after{};
