@@ -64,8 +64,8 @@ public:
     void write(const Batch& batch) {
         held_ = batch;
         const DataCounts left_out = remove_not_held(held_, format_.holds);
-        not_held_ += left_out.events + left_out.images + left_out.imu + left_out.triggers;
         write_held();
+        not_held_ += left_out.events + left_out.images + left_out.imu + left_out.triggers;
     }
 
     void finish() {
@@ -82,7 +82,6 @@ private:
                                               ": expected a recording that is being written, "
                                               "found one after finish()");
         refuse_others();
-        for (const ReferenceImage& image : held_.images) check_image(image);
         refuse_steps_back();
         if (!held_.empty()) file_.write(held_);
         if (!held_.events.empty()) newest_ = held_.events.back().t;
@@ -90,6 +89,13 @@ private:
 
     /// Readers would leave out what lies outside of the sensor or of all time.
     void refuse_others() const {
+        for (const ReferenceImage& image : held_.images) {
+            check_image(image);
+            for (const SensorTime t : {image.t, image.exposure_begin, image.exposure_end})
+                refuse_far(t, path_.c_str());
+        }
+        for (const ImuSample& sample : held_.imu) refuse_far(sample.t, path_.c_str());
+        for (const Trigger& trigger : held_.triggers) refuse_far(trigger.t, path_.c_str());
         for (const Event& event : held_.events) {
             refuse_far(event.t, path_.c_str());
             if (event.x >= width_ || event.y >= height_)

@@ -36,8 +36,8 @@ public:
     EventWriter& operator=(EventWriter&&) noexcept;  ///< leaves the other empty
 
     /// Must follow what was written before in time. Throws Error: usage for an event earlier than
-    /// the one before it or outside of the sensor, for what the format cannot hold and after
-    /// finish(), failed where the disk is full.
+    /// the one before it or outside of the sensor, a time more than 2^60 us from zero, what the
+    /// format cannot hold and after finish(), failed where the disk is full.
     void write(std::span<const Event> events);
 
     /// The same with images, inertial samples and triggers. Kinds that the format has no records

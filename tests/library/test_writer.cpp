@@ -125,6 +125,39 @@ TEST_F(Recordings, AreWrittenOfSensorsThatCoordinatesReachOnly) {
                   std::string::npos);
 }
 
+TEST_F(Recordings, CountWhatTheyDoNotHoldOnceTheRestIsAccepted) {
+    Batch batch;
+    batch.images.resize(1);
+    batch.images[0].pixels = Array2<std::uint16_t>(48, 64);
+    batch.events = {{from_us(1), 64, 2, Polarity::on}};
+    EventWriter writer{temp_ / "events.txt", {"", "", "", 64, 48}};
+    EXPECT_NE(error_of([&] { writer.write(batch); }).find("within 64x48 px"), std::string::npos);
+    EXPECT_EQ(writer.not_held(), 0U);
+    batch.events[0].x = 63;
+    writer.write(batch);
+    EXPECT_EQ(writer.not_held(), 1U);
+}
+
+TEST_F(Recordings, HoldImagesSamplesAndTriggersOfTimesThatAreReadOnly) {
+    const SensorTime far = from_us(-Reconstructor::kFarthestTime - 1);
+    std::vector<Batch> batches(5);
+    for (std::size_t i = 0; i < 3; ++i) {
+        batches[i].images.resize(1);
+        batches[i].images[0].pixels = Array2<std::uint16_t>(48, 64);
+    }
+    batches[0].images[0].t = far;
+    batches[1].images[0].exposure_begin = far;
+    batches[2].images[0].exposure_begin = batches[2].images[0].exposure_end = far;
+    batches[3].imu.resize(1);
+    batches[3].imu[0].t = far;
+    batches[4].triggers.resize(1);
+    batches[4].triggers[0].t = far;
+    EventWriter writer{temp_ / "far.aedat4", {"", "", "", 64, 48}};
+    for (const Batch& batch : batches)
+        EXPECT_NE(error_of([&] { writer.write(batch); }).find("at most 2^60 us"),
+                  std::string::npos);
+}
+
 TEST_F(Recordings, AreWrittenAtTimesThatAreReadOnly) {
     constexpr std::int64_t kLast = Reconstructor::kFarthestTime;
     for (const std::string format : {"aedat4", "evt3", "text", "hdf5"}) {
