@@ -150,8 +150,7 @@ TEST_F(Recordings, HoldImagesSamplesAndTriggersOfTimesThatAreReadOnly) {
     batches[2].images[0].exposure_begin = batches[2].images[0].exposure_end = far;
     batches[3].imu.resize(1);
     batches[3].imu[0].t = far;
-    batches[4].triggers.resize(1);
-    batches[4].triggers[0].t = far;
+    batches[4].triggers = {{far, Trigger::Kind::rising}};
     EventWriter writer{temp_ / "far.aedat4", {"", "", "", 64, 48}};
     for (const Batch& batch : batches)
         EXPECT_NE(error_of([&] { writer.write(batch); }).find("at most 2^60 us"),
