@@ -144,12 +144,11 @@ private:
     ImageGeometry geometry_;
 };
 
-/// Frame::arrived by the system's clock, which is ROS's: us since 1970.
-std::int64_t system_us(HostTime arrived) {
-    using std::chrono::duration_cast, std::chrono::microseconds;
-    const auto age = std::chrono::steady_clock::now() - arrived;
-    const auto then = std::chrono::system_clock::now() - age;
-    return duration_cast<microseconds>(then.time_since_epoch()).count();
+/// ROS time is that of the system's clock.
+SensorDuration system_ahead() {
+    using namespace std::chrono;
+    return duration_cast<SensorDuration>(system_clock::now().time_since_epoch() -
+                                         steady_clock::now().time_since_epoch());
 }
 
 Calibration calibration_of(const Ros2SinkSettings& settings) {
@@ -181,7 +180,7 @@ public:
     void write(const Frame& frame) override {
         const bool first = !begun_;
         if (first && !begin(frame)) return;
-        const std::int64_t stamp = clock_.stamp_us(frame, system_us(frame.arrived));
+        const std::int64_t stamp = clock_.stamp_us(frame, system_ahead());
         tell_offset(frame, stamp);
         const auto header = header_of(stamp, settings_.name.frame_id);
         if (image_.writer.readers() > 0) image_.write(frame.intensity, header);

@@ -2,6 +2,7 @@
 #include "pipeline/ros2/stamp_clock.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace eventide {
@@ -27,17 +28,24 @@ void StampClock::follow(const Frame& frame, std::int64_t arrived_us) {
     offset_us_ += std::clamp(least_us_ - offset_us_, -most, most);
 }
 
-std::int64_t StampClock::stamp_us(const Frame& frame, std::int64_t arrived_us) {
+std::int64_t StampClock::stamp_us(const Frame& frame, SensorDuration system_ahead) {
+    using std::chrono::duration_cast;
+    const auto arrived = duration_cast<SensorDuration>(frame.arrived.time_since_epoch());
+    const std::int64_t arrived_us = (arrived + system_ahead).count();
+    const bool first = !t_, follows = shifted_ && live_;
+    const SensorDuration step = system_ahead - system_ahead_;
+    const bool is_set = !first && follows && (step >= kStep || step <= -kStep);
     set_anew_ = false;
-    const bool first = !t_;
-    if (first || frame.t <= *t_)
+    if (first || is_set || frame.t <= *t_)
         set(frame, arrived_us);
-    else if (shifted_ && live_)
+    else if (follows)
         follow(frame, arrived_us);
     arrived_us_ = arrived_us;
+    system_ahead_ = system_ahead;
     t_ = frame.t;
     const std::int64_t stamp = to_us(frame.t) + std::llround(offset_us_);
-    stamp_us_ = first ? stamp : std::max(stamp, stamp_us_ + 1);
+    const bool may_fall = first || (is_set && step < step.zero());
+    stamp_us_ = may_fall ? stamp : std::max(stamp, stamp_us_ + 1);
     return stamp_us_;
 }
 

@@ -101,9 +101,12 @@ void UdpRecordsParser::take_record(Batch& into) {
     take(t, word >> 16 & 0x7FFF, word & 0x7FFF, (word >> 15 & 1) != 0, into);
 }
 
-/// Near the times that were believed: stamps that lie would lead from one range into the next.
+/// Near the times that were believed, as stamps that lie would lead from one range into the next,
+/// and as much later as the host's clock says: nothing is sent while nothing moves.
 std::int64_t UdpRecordsParser::unwrapped(std::uint32_t stamp) const {
-    return nearest_time(stamp, validator_.newest_us().value_or(std::int64_t{stamp}));
+    const auto newest = validator_.newest_us();
+    if (!newest) return stamp;
+    return nearest_time(stamp, *newest + arrival_us_ - newest_arrival_us_);
 }
 
 void UdpRecordsParser::take(std::int64_t t_us, unsigned x, unsigned y, bool on, Batch& into) {
@@ -116,6 +119,7 @@ void UdpRecordsParser::take(std::int64_t t_us, unsigned x, unsigned y, bool on, 
         into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
     }
     validator_.add(t_us, x, y, on, into, damage_);
+    if (validator_.newest_us() != newest) newest_arrival_us_ = arrival_us_;
 }
 
 void UdpRecordsParser::finish(Batch& into) {

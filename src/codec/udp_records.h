@@ -33,10 +33,10 @@ void append_udp_records(UdpRecords kind, std::span<const Event> events,
 /// Bytes of the whole records at the front: what a datagram holds beyond them is none.
 std::size_t whole_udp_records(UdpRecords kind, std::span<const std::byte> datagram);
 
-/// Times of 32 bits go on where they wrap. Events of spif without a time have that of their
-/// arrival, us after the first arrival. Where kEventsOfAnother events in a row lie more than a
-/// second before those before them, the sender has begun anew: a Trigger of kind timestamp_reset
-/// says so.
+/// Times of 32 bits go on where they wrap, behind a silence by the host's clock. Events of spif
+/// without a time have that of their arrival, us after the first arrival. Where kEventsOfAnother
+/// events in a row lie more than a second before those before them, the sender has begun anew: a
+/// Trigger of kind timestamp_reset says so.
 class UdpRecordsParser final : public Parser {
 public:
     static constexpr int kEventsOfAnother = 16;
@@ -64,7 +64,8 @@ private:
     std::size_t n_ = 0;  ///< of its bytes
     std::optional<HostTime> first_arrival_;
     std::int64_t arrival_us_ = 0;
-    int early_ = 0;  ///< events in a row that lie far before what came
+    std::int64_t newest_arrival_us_ = 0;  ///< of the newest time believed
+    int early_ = 0;                       ///< events in a row that lie far before what came
 };
 
 }  // namespace eventide

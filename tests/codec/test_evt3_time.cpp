@@ -169,5 +169,58 @@ TEST(Evt3, ACameraThatIsOpenedAgainAtOnceIsNotInThePast) {
     EXPECT_EQ(batch.events, expected);
 }
 
+/// Two words that tell this time, and an event.
+std::vector<std::byte> words_at(std::int64_t us) {
+    const auto high = unsigned(us / kHigh % 4096);
+    return to_stream({time_high(high), time_high(high), addr_y(1), addr_x(1)});
+}
+
+/// 24 bits are 16.8 s.
+TEST(Evt3, ALossIsAsLongAsTheHostsClockSays) {
+    for (std::int64_t before = 1'000'000; before < 17'000'000; before += 1'310'720)
+        for (std::int64_t lost = 100'000; lost < 40'000'000; lost += 1'720'320) {
+            Evt3Parser parser(kWidth, kHeight);
+            Batch batch;
+            parser.arrives(host_at(before));
+            parser.parse(words_at(before), batch);
+            parser.resync();
+            parser.arrives(host_at(before + lost + 5000));  // later than others
+            parser.parse(words_at(before + lost), batch);
+            ASSERT_EQ(batch.events, (std::vector{event(before / kHigh * kHigh, 1, 1),
+                                                 event((before + lost) / kHigh * kHigh, 1, 1)}))
+                << lost << " us lost at " << before;
+            EXPECT_EQ(parser.damaged().total(), 0U);
+        }
+}
+
+/// A program that was stopped takes what the driver had kept, and then what comes behind the loss,
+/// both at once.
+TEST(Evt3, NoLossIsBackInTime) {
+    for (const std::int64_t lost : {3'000'000, 9'000'000, 16'000'000}) {
+        Evt3Parser parser(kWidth, kHeight);
+        Batch batch;
+        parser.arrives(host_at(60'000'000));
+        parser.parse(words_at(16'000'000), batch);
+        parser.resync();
+        parser.arrives(host_at(60'001'000));
+        parser.parse(words_at(16'000'000 + lost), batch);
+        EXPECT_EQ(parser.clock(), from_us((16'000'000 + lost) / kHigh * kHigh)) << lost;
+    }
+}
+
+TEST(Evt3, AWordThatLiesBehindALossHasNoSayInTheNext) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.arrives(host_at(0));
+    parser.parse(to_stream({time_high(500), time_high(500), addr_y(1), addr_x(1)}), batch);
+    parser.resync();
+    parser.arrives(host_at(100'000));
+    parser.parse(to_stream({time_high(400), time_high(520), addr_y(1), addr_x(2), time_high(520),
+                            addr_x(3)}),
+                 batch);
+    EXPECT_EQ(batch.events, (std::vector{event(500 * kHigh, 1, 1), event(520 * kHigh, 2, 1),
+                                         event(520 * kHigh, 3, 1)}));
+}
+
 }  // namespace
 }  // namespace eventide::evt3

@@ -77,11 +77,28 @@ TEST(IniVationClock, ADeviceThatComesBackAndCountsFromZeroGoesOnByTheHostsClock)
     camera.packet(0, 1'000);
     camera.clock.forget();
     camera.packet(kSecond);
-    camera.clock.reset();
+    camera.clock.reset(camera.damage);
     EXPECT_EQ(camera.clock.us(), kSecond + 1'000);
     EXPECT_TRUE(camera.clock.timestamp(5, camera.damage));
     EXPECT_EQ(camera.clock.us(), kSecond + 1'005);
     EXPECT_EQ(camera.damage.total(), 0U);
+}
+
+/// Of wraps 12 bits are counted, some 134 s.
+TEST(IniVationClock, ADeviceThatResetItselfWhileNobodyReadGoesOnByTheHostsClock) {
+    Camera camera;
+    camera.packet(0, 1'000);
+    camera.packet(10 * kMs, 11'000);
+    camera.packet(200 * kSecond, 12'000);  // still from before
+    EXPECT_EQ(camera.clock.us(), 12'000);
+    camera.packet(200 * kSecond + kMs);
+    camera.clock.reset(camera.damage);
+    EXPECT_TRUE(camera.clock.timestamp(5, camera.damage));
+    EXPECT_NEAR(double(camera.clock.us()), 200e6 + 2e3, 200e6 * 250e-6) << "but for the drift";
+    EXPECT_EQ(camera.corrected(), 1U);
+    camera.packet(200 * kSecond + 2 * kMs);
+    camera.clock.reset(camera.damage);  // by another's hand
+    EXPECT_EQ(camera.corrected(), 1U);
 }
 
 /// However little time has passed by the host's clock, which was late with the packet before.
@@ -162,7 +179,7 @@ TEST(IniVationClock, NoMoreIsTakenBackThanWasGuessed) {
 TEST(IniVationClock, AResetEndsTheDoubt) {
     Camera camera;
     guess_too_much(camera);
-    camera.clock.reset();
+    camera.clock.reset(camera.damage);
     camera.packet(61 * kMs, 100);
     camera.packet(62 * kMs, 30'000);
     camera.packet(63 * kMs, 30'500);
@@ -179,7 +196,7 @@ TEST(IniVationClock, AfterAResetWhatWasBeforeSaysNothingOfDelays) {
     camera.packet(60 * kMs, 30'000);
     camera.clock.forget();
     camera.packet(kSecond);
-    camera.clock.reset();
+    camera.clock.reset(camera.damage);
     camera.packet(kSecond + 10 * kMs, 10'000);
     camera.clock.forget();
     camera.packet(kSecond + 11 * kMs, 11'000);

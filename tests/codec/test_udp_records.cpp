@@ -160,6 +160,32 @@ TEST(UdpRecords, OfSpifSomeMayHaveATimeAndOthersNone) {
     EXPECT_EQ(batch.events[5], (Event{from_us(20), 5, 7, Polarity::on}));
 }
 
+/// 32 bits are 71.6 minutes.
+TEST(UdpRecords, TimesBehindASilenceAreWhatTheHostsClockSays) {
+    for (const UdpRecords kind : {UdpRecords::t32, UdpRecords::spif})
+        for (const int minutes : {1, 30, 36, 60, 75, 80, 110, 300}) {
+            UdpRecordsParser parser{kind, 640, 480};
+            const std::int64_t begin_us = 2'000'000'000, silent_us = minutes * 60'000'000LL;
+            std::vector<Event> expected;
+            Batch batch;
+            for (int i = 0; i < 40; ++i) {
+                const std::int64_t t_us = begin_us + i * 1000 + (i < 20 ? 0 : silent_us);
+                const Event event{from_us(t_us), 3, 4, Polarity::off};
+                expected.push_back(event);
+                Bytes bytes;
+                Event sent = event;
+                sent.t = from_us(t_us % (std::int64_t{1} << 32));
+                append_udp_records(kind, std::vector<Event>{sent}, bytes);
+                parser.arrives(HostTime{SensorDuration{t_us + i % 7 * 100}});
+                parser.parse(bytes, batch);
+            }
+            parser.finish(batch);
+            EXPECT_EQ(batch.events, expected) << minutes << " min";
+            EXPECT_TRUE(batch.triggers.empty());
+            EXPECT_EQ(parser.damaged().total(), 0U);
+        }
+}
+
 TEST(UdpRecords, SpifWithoutTimesHasThatOfTheArrival) {
     UdpRecordsParser parser(UdpRecords::spif, 640, 480);
     Bytes word;

@@ -13,9 +13,11 @@ namespace eventide {
 namespace {
 
 constexpr std::int64_t kNow = 1'790'000'000'000'000;  // us since 1970
+constexpr SensorDuration kAhead{kNow};                // the system's clock, of the frames' arrival
 
-Frame frame_at(std::int64_t t_us, std::int64_t window_end_us) {
+Frame frame_at(std::int64_t t_us, std::int64_t window_end_us, std::int64_t arrived_us = 0) {
     Frame frame;
+    frame.arrived = HostTime{SensorDuration{arrived_us}};
     frame.t = from_us(t_us);
     frame.window = {from_us(window_end_us - 10'000), from_us(window_end_us)};
     return frame;
@@ -23,9 +25,9 @@ Frame frame_at(std::int64_t t_us, std::int64_t window_end_us) {
 
 TEST(StampClock, ASensorThatCountsFromItsStartIsShiftedToItsArrival) {
     StampClock clock{StampRule::automatic, false};
-    EXPECT_EQ(clock.stamp_us(frame_at(4'000, 10'000), kNow), kNow - 6'000);
+    EXPECT_EQ(clock.stamp_us(frame_at(4'000, 10'000), kAhead), kNow - 6'000);
     EXPECT_TRUE(clock.is_set_anew());
-    EXPECT_EQ(clock.stamp_us(frame_at(14'000, 20'000), kNow + 99'000), kNow + 4'000)
+    EXPECT_EQ(clock.stamp_us(frame_at(14'000, 20'000, 99'000), kAhead), kNow + 4'000)
         << "as far apart as in the sensor";
     EXPECT_FALSE(clock.is_set_anew());
 }
@@ -33,18 +35,18 @@ TEST(StampClock, ASensorThatCountsFromItsStartIsShiftedToItsArrival) {
 TEST(StampClock, ASensorThatCountsFrom1970IsTakenAtItsWord) {
     StampClock clock{StampRule::automatic, true};
     const std::int64_t t = 1'633'953'690'975'951;
-    EXPECT_EQ(clock.stamp_us(frame_at(t, t + 10), kNow), t);
+    EXPECT_EQ(clock.stamp_us(frame_at(t, t + 10), kAhead), t);
     EXPECT_EQ(clock.offset_us(), 0);
     StampClock arrival{StampRule::arrival, true};
-    EXPECT_EQ(arrival.stamp_us(frame_at(t, t + 10), kNow), kNow - 10);
+    EXPECT_EQ(arrival.stamp_us(frame_at(t, t + 10), kAhead), kNow - 10);
     StampClock sensor{StampRule::sensor, true};
-    EXPECT_EQ(sensor.stamp_us(frame_at(5, 10), kNow), 5);
+    EXPECT_EQ(sensor.stamp_us(frame_at(5, 10), kAhead), 5);
 }
 
 TEST(StampClock, KnowsThatLaterWindowsCameWithLookahead) {
     StampClock clock{StampRule::arrival, false};
     clock.set_lookahead(2);
-    EXPECT_EQ(clock.stamp_us(frame_at(10'000, 10'000), kNow), kNow - 20'000);
+    EXPECT_EQ(clock.stamp_us(frame_at(10'000, 10'000), kAhead), kNow - 20'000);
 }
 
 TEST(StampClock, AnotherLookaheadLeavesTheStampsWhereTheyAre) {
@@ -54,7 +56,7 @@ TEST(StampClock, AnotherLookaheadLeavesTheStampsWhereTheyAre) {
         for (int k = 0; k < 1000; ++k) {
             t += 10'000;
             clock.set_lookahead(lookahead);
-            ASSERT_EQ(clock.stamp_us(frame_at(t, t), kNow + t + 10'000 * lookahead), kNow + t)
+            ASSERT_EQ(clock.stamp_us(frame_at(t, t, t + 10'000 * lookahead), kAhead), kNow + t)
                 << lookahead << " event windows, frame " << k;
         }
 }
@@ -67,7 +69,8 @@ TEST(StampClock, FollowsTheDriftOfACameraAndNotItsDelays) {
         const std::int64_t t = 10'000 * (k + 1);
         const auto true_arrival = kNow + std::int64_t(std::llround(double(t) * (1 + kDrift)));
         const std::int64_t delay = (k * 7919) % 5'000;  // up to 5 ms late
-        const std::int64_t stamp = clock.stamp_us(frame_at(t, t), true_arrival + delay);
+        const std::int64_t stamp =
+            clock.stamp_us(frame_at(t, t, true_arrival - kNow + delay), kAhead);
         EXPECT_GT(stamp, before) << k;
         if (k > 1000) {
             EXPECT_LE(std::abs(stamp - true_arrival), 300) << k;
@@ -79,11 +82,11 @@ TEST(StampClock, FollowsTheDriftOfACameraAndNotItsDelays) {
 /// The first packet was held up for 50 ms.
 TEST(StampClock, AnOffsetThatWasTooLargeShrinksByAMillisecondASecond) {
     StampClock clock{StampRule::arrival, true};
-    std::int64_t stamp = clock.stamp_us(frame_at(0, 0), kNow + 50'000);
+    std::int64_t stamp = clock.stamp_us(frame_at(0, 0, 50'000), kAhead);
     EXPECT_EQ(stamp, kNow + 50'000);
     for (int k = 1; k <= 50'000; ++k) {
         const std::int64_t t = 10'000 * k;
-        const std::int64_t before = std::exchange(stamp, clock.stamp_us(frame_at(t, t), kNow + t));
+        const std::int64_t before = std::exchange(stamp, clock.stamp_us(frame_at(t, t, t), kAhead));
         ASSERT_GE(stamp - before, 9'989) << k;
     }
     EXPECT_NEAR(double(stamp - kNow), 500'000'000., 1);
@@ -103,20 +106,51 @@ TEST(Header, HoldsMicrosecondsBeforeAndAfter1970) {
 
 TEST(StampClock, OfARecordingTheOffsetStays) {
     StampClock clock{StampRule::arrival, false};
-    const std::int64_t first = clock.stamp_us(frame_at(10'000, 10'000), kNow);
-    EXPECT_EQ(clock.stamp_us(frame_at(20'000, 20'000), kNow + 5'000'000), first + 10'000)
+    const std::int64_t first = clock.stamp_us(frame_at(10'000, 10'000), kAhead);
+    EXPECT_EQ(clock.stamp_us(frame_at(20'000, 20'000, 5'000'000), kAhead), first + 10'000)
         << "slower than recorded";
 }
 
 TEST(StampClock, RisesThoughTheCamerasClockBeginsAnew) {
     StampClock clock{StampRule::arrival, true};
-    const std::int64_t before = clock.stamp_us(frame_at(5'000'000, 5'000'000), kNow);
-    const std::int64_t after = clock.stamp_us(frame_at(1'000, 1'000), kNow + 50'000);
+    const std::int64_t before = clock.stamp_us(frame_at(5'000'000, 5'000'000), kAhead);
+    const std::int64_t after = clock.stamp_us(frame_at(1'000, 1'000, 50'000), kAhead);
     EXPECT_TRUE(clock.is_set_anew());
     EXPECT_EQ(after, before + 50'000);
     StampClock sensor{StampRule::sensor, true};
-    EXPECT_EQ(sensor.stamp_us(frame_at(5'000'000, 5'000'000), kNow), 5'000'000);
-    EXPECT_EQ(sensor.stamp_us(frame_at(1'000, 1'000), kNow), 5'000'001);
+    EXPECT_EQ(sensor.stamp_us(frame_at(5'000'000, 5'000'000), kAhead), 5'000'000);
+    EXPECT_EQ(sensor.stamp_us(frame_at(1'000, 1'000), kAhead), 5'000'001);
+}
+
+/// A board without a battery learns the time while it runs.
+TEST(StampClock, FollowsASystemsClockThatIsSet) {
+    constexpr std::int64_t kHour = 3'600'000'000;
+    for (const std::int64_t step : {kHour, -kHour, 600'000L, -600'000L}) {
+        StampClock clock{StampRule::automatic, true};
+        std::int64_t before = 0;
+        for (int k = 0; k < 100; ++k) {
+            const std::int64_t t = 10'000 * k;
+            const std::int64_t expected = kNow + t + (k < 50 ? 0 : step);
+            const std::int64_t stamp =
+                clock.stamp_us(frame_at(t, t, t), SensorDuration{kNow + (k < 50 ? 0 : step)});
+            EXPECT_EQ(stamp, expected) << k;
+            EXPECT_EQ(clock.is_set_anew(), k == 0 || k == 50) << k;
+            if (k != 50) {
+                EXPECT_GT(stamp, before);
+            }
+            before = stamp;
+        }
+    }
+}
+
+TEST(StampClock, ASystemsClockThatIsSetChangesNothingThatDoesNotHangOnIt) {
+    const auto both = [](StampClock clock) {
+        const std::int64_t before = clock.stamp_us(frame_at(10'000, 10'000), kAhead);
+        return clock.stamp_us(frame_at(20'000, 20'000, 9'000), kAhead + std::chrono::hours{1}) -
+               before;
+    };
+    EXPECT_EQ(both({StampRule::sensor, true}), 10'000);
+    EXPECT_EQ(both({StampRule::arrival, false}), 10'000) << "of a recording the offset stays";
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ void DavisParser::event(std::uint16_t x, Polarity polarity, Batch& into) {
 }
 
 void DavisParser::timestamp_reset(Batch& into) {
-    clock_.reset();
+    clock_.reset(damage_);
     frame_.abandon();
     imu_.abandon();
     trigger(Trigger::Kind::timestamp_reset, 0, into);

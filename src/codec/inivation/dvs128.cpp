@@ -20,7 +20,7 @@ void Dvs128Parser::parse(std::span<const std::byte> bytes, Batch& into) {
 void Dvs128Parser::record(std::uint16_t address, std::uint16_t time, Batch& into) {
     if ((time & kWrapBit) != 0) return clock_.wrap(1, damage_);
     if ((time & kResetBit) != 0) {  // the device counts from zero again, the stream goes on
-        clock_.reset();
+        clock_.reset(damage_);
         into.triggers.push_back({clock_.now(), Trigger::Kind::timestamp_reset, 0});
         return;
     }

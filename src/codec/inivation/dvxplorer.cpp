@@ -94,7 +94,7 @@ void DvxplorerParser::special(std::uint16_t data, Batch& into) {
         case 0:
             return;
         case 1:
-            clock_.reset();
+            clock_.reset(damage_);
             imu_.abandon();
             return trigger(Trigger::Kind::timestamp_reset, 0);
         case 2:

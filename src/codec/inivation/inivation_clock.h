@@ -52,9 +52,15 @@ public:
         move_to(wrap_add_, damage);
     }
     /// The device counts from zero again, the stream goes on (after an unplugging, by the host's
-    /// clock).
-    void reset() {
-        time_ = std::max(time_, expected().value_or(time_));
+    /// clock). A device that nobody read from for minutes also resets itself, when it cannot count
+    /// its wraps any further: then time is behind the host's clock by more than packets are ever
+    /// late.
+    void reset(Damage& damage) {
+        const bool is_stalled = known_ && reference_ && arrived_ &&
+                                reference_->latest(*arrived_) - time_ > kLongestDelayUs;
+        if (is_stalled) damage.count(DamageReason::time_corrected);
+        time_ = is_stalled ? reference_->latest(*arrived_)
+                           : std::max(time_, expected().value_or(time_));
         wrap_add_ = told_ = time_;
         known_ = true;
         told_at_ = arrived_;
@@ -79,6 +85,7 @@ private:
     // How much a packet may seem too early, and how much all of them too late, without a wrap being
     // wrong: a reference from packets that were all late is that much off, too.
     static constexpr std::int64_t kEarlySlackUs = kWrapUs / 2, kLateSlackUs = kWrapUs / 3;
+    static constexpr std::int64_t kLongestDelayUs = 1'000'000;
     static constexpr std::int64_t kGuessTimeoutUs = 300'000;  ///< until a guess is believed
     static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 

@@ -27,6 +27,8 @@ namespace eventide {
 ///
 /// A camera that was opened again may count from anywhere, and its few bits do not tell how long it
 /// was away: its first word, once the next agrees, is taken to mean what the host's clock says.
+/// Neither do they tell how long a loss was: of the times a first word behind one may mean, the one
+/// that is nearest to the host's clock is taken, and none before the loss.
 class EvtTimeHigh {
 public:
     static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // of more the time is believed
@@ -121,8 +123,20 @@ private:
         told_at_ = arrived_;
     }
     bool is_near(std::int64_t step) const { return step >= -longest_ && step <= longest_; }
+    /// Since the last time that was believed, by the host's clock.
+    std::optional<std::int64_t> passed() const {
+        if (!arrived_ || !told_at_) return std::nullopt;
+        const auto us = std::chrono::duration_cast<SensorDuration>(*arrived_ - *told_at_).count();
+        return std::max<std::int64_t>(us, 0) >> shift_;
+    }
+    /// Since the beginning or a loss.
     std::int64_t first_time(std::int64_t value) const {
-        return ever_heard_ ? unwrapped(value) : value;
+        if (!ever_heard_) return value;
+        const auto passed = this->passed();
+        if (!passed) return unwrapped(value);
+        const std::int64_t by_host = last_ + *passed;
+        const std::int64_t nearest = by_host + step_from(by_host, value);
+        return nearest < last_ - longest_ ? nearest + range_ : nearest;
     }
 
     void begin(std::int64_t value) {
@@ -133,9 +147,9 @@ private:
     /// What the word means where the camera counts from elsewhere: later than all before, and as
     /// much as the host's clock says.
     std::int64_t time_by_host(std::int64_t value) {
-        if (!ever_heard_ || !arrived_ || !told_at_) return first_time(value);
-        const auto away = std::chrono::duration_cast<SensorDuration>(*arrived_ - *told_at_).count();
-        const std::int64_t high = last_ + 1 + (std::max<std::int64_t>(away, 0) >> shift_);
+        const auto passed = this->passed();
+        if (!ever_heard_ || !passed) return first_time(value);
+        const std::int64_t high = last_ + 1 + *passed;
         turn_ += high - value;
         return high;
     }
@@ -147,7 +161,8 @@ private:
             return begin(value);
         }
         if (!is_near(step)) {
-            leap_ = Doubt{step > 0 ? first_->high + step : first_time(value)};
+            // Where the host's clock is known the first word has no say in what this one means.
+            leap_ = Doubt{step > 0 && !passed() ? first_->high + step : first_time(value)};
             return;
         }
         tell(first_->high + step);

@@ -13,8 +13,8 @@ using namespace std::chrono_literals;
 class Machine {
 public:
     explicit Machine(std::vector<QualityLevel> levels = quality_levels({1, 0}, true, true),
-                     QualityDemand demand = {20, 40, 1, {}})
-        : demand_{demand}, control_{kCost, std::move(levels), 0, demand} {}
+                     QualityDemand demand = {20, 40, 1, {}}, std::size_t at = 0)
+        : demand_{demand}, control_{kCost, std::move(levels), at, demand} {}
 
     /// Returns how often the level was changed.
     int run(double seconds, double frames, double encoding = 1, bool merges = false) {
@@ -125,10 +125,17 @@ TEST(QualityControl, AStepUpThatWasTakenBackIsTriedAgainAfterTwiceTheTime) {
     EXPECT_NEAR(seconds_until_up(), 5, 1.5);
 }
 
-TEST(QualityControl, GoesUpWhereFortyPerCentAreLeftAndNotBefore) {
+TEST(QualityControl, GoesBackToWhereItBeganWhereAQuarterIsLeftAndNotBefore) {
     Machine machine;
     machine.run(5, 1);
     machine.run(4, 4.6);
+    ASSERT_EQ(machine.level(), (QualityLevel{1, 1}));
+    EXPECT_EQ(machine.run(60, 3.9), 0) << "0.78 of the frames' thread at the full rate";
+    EXPECT_EQ(machine.run(10, 3.6), 1) << "0.72";
+}
+
+TEST(QualityControl, GoesHigherThanItBeganWhereFortyPerCentAreLeftAndNotBefore) {
+    Machine machine{quality_levels({1, 0}, true, true), {20, 40, 1, {}}, 1};
     ASSERT_EQ(machine.level(), (QualityLevel{1, 1}));
     EXPECT_EQ(machine.run(60, 3.4), 0) << "0.68 of the frames' thread at the full rate";
     EXPECT_EQ(machine.run(10, 2.8), 1) << "0.56";
@@ -157,8 +164,10 @@ TEST(QualityControl, StaysBelowABudgetThatThreadsShare) {
     Machine machine{quality_levels({1, 0}, true, true), {20, 40, 2, 0.5}};
     machine.run(10, 0.5, 0.5);
     EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
-    machine.run(10, 0.6, 0.6);
-    EXPECT_EQ(machine.level(), (QualityLevel{1, 2}));
+    machine.run(60, 0.6, 0.6);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0})) << "0.48";
+    machine.run(10, 0.65, 0.65);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 2})) << "0.52";
 }
 
 TEST(QualityControl, FreesCoresStepByStepForEncodingThatTakesTooLong) {

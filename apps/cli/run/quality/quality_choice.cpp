@@ -80,8 +80,9 @@ double cores_of(double threads) {
 
 double affordable_load(const QualityDemand& demand) {
     constexpr double kShare = 0.7;
-    const double pace = kShare * cores_of(demand.threads);
-    return demand.share ? std::min(*demand.share, pace) : pace;
+    const double cores = cores_of(demand.threads), pace = kShare * cores;
+    if (!demand.share) return pace;
+    return std::min(*demand.share * cores / std::max(demand.threads, 1.0), pace);
 }
 
 std::optional<QualityChoice> best_that_holds(std::span<const PrecisionCost> costs,

@@ -58,8 +58,8 @@ NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
 NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
                     const QualityDemand& demand, double windows);
 
-/// What of a core the network may take, before anything is known of this run: the budget, and at
-/// most 70 % of what its threads do, each further one 70 % of the first.
+/// What of a core the network may take, before anything is known of this run: what its threads do
+/// within the budget, and at most 70 % of what they do, each further one 70 % of the first.
 double affordable_load(const QualityDemand& demand);
 
 /// So many cores are what the network's threads do together.

@@ -15,7 +15,10 @@ constexpr Seconds kRaiseWait{5};  // before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
 constexpr double kFewMerged = 0.05;  // of the windows: single ones wait for a frame
-constexpr double kHolds = 0.9, kComfortable = 0.75, kEasy = 0.6;
+// A level as it was chosen at the start may take 70 % of what its threads do, and all of the
+// budget (affordable_load): what is asked of it later is no more.
+constexpr QualityMargin kHolds{0.9, 1}, kAsChosen{0.75, 1}, kComfortable{0.75, 0.75},
+    kEasy{0.6, 0.6};
 
 /// Half of a measure is what was known: single windows may be slow for reasons of their own.
 void mix(double& known, double found) {
@@ -30,6 +33,7 @@ QualityControl::QualityControl(PrecisionCost profile, std::vector<QualityLevel> 
       levels_{std::move(levels)},
       asked_{demand.frames / (demand.pace > 0 ? demand.pace : 1)},
       at_{at},
+      chosen_{at},
       demand_{demand},
       encode_factor_{1 / std::max(demand.threads, 1.0)},
       frame_factor_{encode_factor_},
@@ -52,11 +56,11 @@ NetworkLoad QualityControl::load_at(std::size_t level) const {
     return {load.encode * encode_factor, load.frames * frame_factor_ + take_s_ * windows};
 }
 
-bool QualityControl::holds(std::size_t level, double margin) const {
+bool QualityControl::holds(std::size_t level, QualityMargin margin) const {
     const NetworkLoad load = load_at(level);
-    if (std::max(load.encode, load.frames) > margin) return false;
+    if (std::max(load.encode, load.frames) > margin.thread) return false;
     return !demand_.share ||
-           load.total() * std::max(demand_.threads, 1.0) <= margin * *demand_.share;
+           load.total() * std::max(demand_.threads, 1.0) <= margin.budget * *demand_.share;
 }
 
 void QualityControl::learn_windows(const QualityMeasure& now) {
@@ -91,8 +95,8 @@ bool QualityControl::look(const QualityMeasure& now) {
     measured_ = load_at(at_);
     before_ = now;
     if (idle) return false;  // a camera that is silent, or a page that was paused
-    const bool strained =
-        merging_ || !holds(at_, kHolds) || (measured_.encode > kComfortable && can_lengthen(at_));
+    const bool strained = merging_ || !holds(at_, kHolds) ||
+                          (measured_.encode > kComfortable.thread && can_lengthen(at_));
     strained_ = strained ? strained_ + 1 : 0;
     if (strained) calm_since_ = now.at;
     if (strained_ >= kStrainedLooks) return lower(now.at);
@@ -108,16 +112,16 @@ bool QualityControl::can_lengthen(std::size_t level) const {
 /// with the fewest, where none's are.
 std::size_t QualityControl::with_fewer_windows() const {
     std::size_t to = at_;
-    while (can_lengthen(to) && load_at(to).encode > kEasy) ++to;
+    while (can_lengthen(to) && load_at(to).encode > kEasy.thread) ++to;
     return to;
 }
 
 bool QualityControl::lower(Seconds now) {
     std::size_t to = at_ + 1;
     const NetworkLoad load = load_at(at_);
-    if (load.encode > kComfortable && can_lengthen(at_)) {
+    if (load.encode > kComfortable.thread && can_lengthen(at_)) {
         to = with_fewer_windows();
-    } else if (load.encode > kHolds) {
+    } else if (load.encode > kHolds.thread) {
         // Windows gain only the cores that frames leave: one step, over levels (small frames, but
         // all of them) that would take more.
         while (to < levels_.size() && (is_shorter(to) || load_at(to).frames >= load.frames)) ++to;
@@ -132,7 +136,7 @@ bool QualityControl::lower(Seconds now) {
 bool QualityControl::raise(Seconds now) {
     forget(now);
     std::size_t to = 0;
-    while (to < at_ && !holds(to, kEasy)) ++to;
+    while (to < at_ && !holds(to, to == chosen_ ? kAsChosen : kEasy)) ++to;
     if (to == at_) calm_since_ = now;
     if (now - calm_since_ < raise_wait_) return false;
     raised_ = now;

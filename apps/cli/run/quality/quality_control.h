@@ -22,20 +22,26 @@ struct QualityMeasure {
     double pace = 1;  ///< sensor time over that of the clock, as it should be
 };
 
+/// What a level may take at most: of the thread that encodes and of the frames', and of the budget.
+struct QualityMargin {
+    double thread, budget;
+};
+
 /// Among levels of one network, best first. It has no clock: measures come with their times, so
 /// that tests make them. One thread.
 ///
 /// Work is compared with the profile: by how much windows and frames cost more or less than
 /// measured there, every level will; but shorter windows are taken to cost at least what the
 /// profile says, and to be as many as there can be, for that is what they are when much moves. A
-/// level holds where encoding and frames each leave their thread a margin, and all work together
-/// the budget. Down, to the best level that leaves a quarter (where encoding takes too long, to
-/// longer windows that leave 40 %, and where none are longer to the next one whose frames take
-/// less), after a second and a half in which the present one did not hold, encoding did not leave a
-/// quarter though windows might be longer, or event windows had to be merged; up, to the best level
-/// that leaves 40 %, after 5 s in which there was one. A step up that was taken back within 15 s
-/// doubles this time; a minute without a change halves it: where the load lies between two levels,
-/// it stays at the lower one, and tries the other once a minute.
+/// level holds where encoding and frames each leave their thread a tenth, and all work together
+/// is within the budget. Down, to the best level that leaves a quarter (where encoding takes too
+/// long, to longer windows that leave 40 %, and where none are longer to the next one whose frames
+/// take less), after a second and a half in which the present one did not hold, encoding did not
+/// leave a quarter though windows might be longer, or event windows had to be merged; up, to the
+/// best level that leaves 40 %, and to the one it began with where that leaves a quarter of each
+/// thread, after 5 s in which there was one. A step up that was taken back within 15 s doubles this
+/// time; a minute without a change halves it: where the load lies between two levels, it stays at
+/// the lower one, and tries the other once a minute.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
@@ -57,7 +63,7 @@ private:
     std::size_t with_fewer_windows() const;
     bool is_shorter(std::size_t level) const;
     NetworkLoad load_at(std::size_t level) const;
-    bool holds(std::size_t level, double margin) const;
+    bool holds(std::size_t level, QualityMargin margin) const;
     bool move(std::size_t to, Seconds now);
     bool lower(Seconds now);
     bool raise(Seconds now);
@@ -67,6 +73,7 @@ private:
     const std::vector<QualityLevel> levels_;
     const double asked_;  // frames a second at pace 1
     std::size_t at_;
+    const std::size_t chosen_;  // at the start
     QualityDemand demand_;
     double encode_factor_, frame_factor_;  // work by the clock over the profile's processor time
     double take_s_ = 0;                    // by the clock, for each window
