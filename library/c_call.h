@@ -46,11 +46,11 @@ template <typename T>
 T filled_in(T whole, const T* argument, const char* what, const char* set_by = "") {
     if (argument == nullptr) return whole;
     const std::size_t size = argument->struct_size, least = sizeof argument->struct_size;
-    if (size > sizeof whole || size < least)
-        throw Error(ErrorKind::usage, std::string{what} + ": expected a struct_size of " +
-                                          std::to_string(least) + " to " +
-                                          std::to_string(sizeof whole) + set_by + ", found " +
-                                          std::to_string(size));
+    if (size > sizeof whole || size < least || size % alignof(T) != 0)
+        throw Error(ErrorKind::usage,
+                    std::string{what} + ": expected a struct_size of " + std::to_string(least) +
+                        " to " + std::to_string(sizeof whole) + ", a multiple of " +
+                        std::to_string(alignof(T)) + set_by + ", found " + std::to_string(size));
     std::memcpy(&whole, argument, size);
     return whole;
 }

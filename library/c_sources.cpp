@@ -141,6 +141,7 @@ eventide_status eventide_read_into(eventide_source* source, eventide_reconstruct
     return c_call([&] {
         eventide_source& from = given(source, "a source");
         Reconstructor& into = given(reconstructor, "a reconstructor").it;
+        refuse_other_sensor(*from.it, into);
         if (!from.it->read(from.batch)) return EVENTIDE_NONE;
         push_from(*from.it, from.batch, into);
         return EVENTIDE_OK;

@@ -42,7 +42,7 @@ void EventIntake::push(const Batch& batch, HostTime arrived) {
 }
 
 void EventIntake::hold(const ReferenceImage& image) {
-    if (is_far(image.t)) {
+    if (is_far(image)) {
         ++counters_.bad_time;
         return;
     }

@@ -16,6 +16,11 @@ inline bool is_far(SensorTime t) {
     return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
 }
 
+/// Its own time or one of its exposure.
+inline bool is_far(const ReferenceImage& image) {
+    return is_far(image.t) || is_far(image.exposure_begin) || is_far(image.exposure_end);
+}
+
 /// Throws Error (usage) naming `what` for such a time: by it a stream would go on for ever.
 inline void refuse_far(SensorTime t, const char* what) {
     if (is_far(t))

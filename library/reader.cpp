@@ -83,6 +83,7 @@ public:
         if (filters_.wants_first())
             if (const auto first = first_event_time(*open_recording(path_, options_)))
                 filters_.count_from(*first);
+        filters_.restart();
         recording_->seek(t);
         damaged_before_ += parser_->damaged().total();
         parser_ = recording_->make_parser();

@@ -45,10 +45,10 @@ void Reconstructor::Impl::open_next() {
     open_ = seen(opened_++);
     schedule_.open(open_.window);
     open_.gap_before = gaps_.open(open_.gap_before);
-    silence_.open(open_.events, schedule_.due());
 }
 
 void Reconstructor::Impl::check_silence() {
+    silence_.open(open_.events, schedule_.due());
     if (!silence_.is_exceeded() || options_.allow_silence) return;
     schedule_.skip(schedule_.due());
     silence_.refuse(open_.window);

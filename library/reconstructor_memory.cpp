@@ -68,8 +68,8 @@ void Reconstructor::Impl::encode() {
 void Reconstructor::Impl::correct() {
     if (!fused_) return;
     has_images_ = fused_->give_all([this] { return intake_.next_image(); }) || has_images_;
-    if (!has_images_) return;
-    count_events(grid_, latent_.events_per_pixel);
+    if (has_images_) count_events(grid_, latent_.events_per_pixel);
+    // Windows before the first image, too: it is followed from its own time, not from the begin.
     fused_->push(grid_.window, latent_.events_per_pixel);
     note_images();
 }
@@ -88,6 +88,7 @@ void Reconstructor::Impl::note_window() {
     while (encoded_ - opened_ > most + 1) {
         open_next();
         schedule_.skip(schedule_.due());
+        silence_.open(open_.events, 0);
     }
 }
 

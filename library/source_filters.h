@@ -24,11 +24,13 @@ public:
     void process(Batch& batch);
 
     /// Whether the next events would be taken for the stream's first ones, wherever they come from.
-    bool wants_first() const { return !chain_.empty() && !has_begun_; }
+    bool wants_first() const { return !chain_.empty() && !chain_.knows_first(); }
     void count_from(SensorTime first) {
         has_begun_ = true;
         chain_.count_from(first);
     }
+    /// What is read next comes from another place. Throws Error (usage), where nothing has changed.
+    void restart() { chain_.restart(); }
 
 private:
     const SensorInfo sensor_;  // before the filters

@@ -106,7 +106,7 @@ private:
         std::uint64_t place;
     };
     static void take(Image& image, Batch& into) {
-        if (!is_far(image.it.t)) into.add_image(std::move(image.it));
+        if (!is_far(image.it)) into.add_image(std::move(image.it));
     }
     void take(const Event& event, Batch& into) {
         if (event.x >= width_ || event.y >= height_)

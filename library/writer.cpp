@@ -69,6 +69,7 @@ public:
     }
 
     void finish() {
+        refuse_after_failure();
         if (!finished_) file_.finish();
         finished_ = true;
     }
@@ -76,14 +77,26 @@ public:
     std::uint64_t not_held() const { return not_held_; }
 
 private:
+    /// A part of what failed may be in the file.
+    void refuse_after_failure() const {
+        if (failed_)
+            throw Error(ErrorKind::usage, path_ +
+                                              ": expected a recording that could be written so "
+                                              "far, found one of which a write failed: nothing of "
+                                              "it is kept");
+    }
+
     void write_held() {
+        refuse_after_failure();
         if (finished_)
             throw Error(ErrorKind::usage, path_ +
                                               ": expected a recording that is being written, "
                                               "found one after finish()");
         refuse_others();
         refuse_steps_back();
+        failed_ = true;
         if (!held_.empty()) file_.write(held_);
+        failed_ = false;
         if (!held_.events.empty()) newest_ = held_.events.back().t;
     }
 
@@ -126,7 +139,7 @@ private:
     Batch held_;
     SensorTime newest_ = SensorTime::min();  // of the events written
     std::uint64_t not_held_ = 0;
-    bool finished_ = false;
+    bool finished_ = false, failed_ = false;
 };
 
 EventWriter::EventWriter(const std::string& path, const SensorInfo& sensor,

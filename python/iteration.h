@@ -36,6 +36,12 @@ public:
     Answer next() noexcept;
     /// stop() of the source, where it has one.
     void stop();
+    /// What it holds, for Python's collector of circles.
+    template <typename Visit>
+    int visit(Visit visit) const {
+        const int stopped = visit(source_.ptr());
+        return stopped != 0 ? stopped : visit(events_.ptr());
+    }
     /// Nobody waits for next() any more: ends it where Python works, while it waits nothing can.
     void give_up();
 

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -54,8 +55,11 @@ public:
     }
     /// Lets go of what may know the pipeline.
     void close() override {
-        with_lock([this] { callable_ = {}; });
+        with_lock([this] { clear(); });
     }
+    /// With Python's lock.
+    PyObject* callable() const { return callable_.ptr(); }
+    void clear() { callable_ = {}; }
 
 private:
     bool call(const Frame& frame) {
@@ -129,6 +133,18 @@ public:
                 {"latency_p99_us", std::uint64_t(c.latency_p99.count())}};
     }
 
+    /// What may know the pipeline, for Python's collector of circles.
+    int visit(const std::function<int(PyObject*)>& visit) const {
+        for (const auto& sink : sinks_)
+            if (const int stopped = visit(sink->callable())) return stopped;
+        return source_->visit(visit);
+    }
+    /// Of one that nobody can reach: it does not run.
+    void clear() {
+        for (const auto& sink : sinks_) sink->clear();
+        source_->clear();
+    }
+
 private:
     const bool sequential_;
     InterruptibleRun interruptible_;
@@ -137,11 +153,38 @@ private:
     std::unique_ptr<EventPipeline> pipeline_;
 };
 
+/// Null while Python makes or destroys it.
+PipelineOfPython* pipeline_of(PyObject* self) {
+    const auto held = reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder();
+    return held.holder_constructed() ? held.value_ptr<PipelineOfPython>() : nullptr;
+}
+
+int traverse(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    const PipelineOfPython* pipeline = pipeline_of(self);
+    if (pipeline == nullptr) return 0;
+    return pipeline->visit(
+        [&](PyObject* object) { return object != nullptr ? visit(object, arg) : 0; });
+}
+
+int clear(PyObject* self) {
+    if (PipelineOfPython* pipeline = pipeline_of(self)) pipeline->clear();
+    return 0;
+}
+
+/// A sink is often a method of the object that owns the pipeline.
+void be_collected(PyHeapTypeObject* made) {
+    PyTypeObject& type = made->ht_type;
+    type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type.tp_traverse = traverse;
+    type.tp_clear = clear;
+}
+
 }  // namespace
 
 void add_pipeline(py::module_& module) {
     py::class_<PipelineOfPython>(
-        module, "Pipeline",
+        module, "Pipeline", py::custom_type_setup(be_collected),
         "Reading, cutting, encoding and rendering on a thread each.\n"
         "\n"
         "source: a Reader, a Camera, or anything that gives structured arrays of events\n"

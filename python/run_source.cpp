@@ -72,6 +72,10 @@ public:
         const std::lock_guard lock{source_.mutex};
         source_.running.reset();
     }
+    int visit(const std::function<int(PyObject*)>& visit) const override {
+        return visit(owner_.ptr());
+    }
+    void clear() override {}  // it is what is read: others in the circle let go
 
 private:
     py::object owner_;
@@ -105,11 +109,16 @@ public:
             throw Error(ErrorKind::usage,
                         "pipeline: expected one run, found a second; make another pipeline");
     }
-    /// Lets go of what may know the pipeline: Python does not see such a circle.
+    /// Lets go of what may know the pipeline.
     // NOLINTNEXTLINE(bugprone-exception-escape): as in stop().
     void end() noexcept override {
         with_lock([this] { iteration_.reset(); });
     }
+
+    int visit(const std::function<int(PyObject*)>& visit) const override {
+        return iteration_ ? iteration_->visit(visit) : 0;
+    }
+    void clear() override { iteration_.reset(); }
 
     bool read(Batch& batch) override {
         batch.clear();

@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <memory>
 
 namespace eventide::python {
@@ -15,6 +16,12 @@ public:
     /// Throws Error (usage) where another run is on, or was.
     virtual void begin() = 0;
     virtual void end() noexcept = 0;
+
+    /// For Python's collector of circles, which has its lock: calls `visit` with each object held,
+    /// until it gives anything but 0, and returns that.
+    virtual int visit(const std::function<int(PyObject*)>& visit) const = 0;
+    /// Lets go of them, where it can do without; Python's lock is held. Nothing runs.
+    virtual void clear() = 0;
 };
 
 /// 0 for a width or height that the source has itself. Throws Error (usage) where neither tells it,

@@ -76,6 +76,7 @@ template <typename T>
 bool read_into(Source<T>& source, GuardedReconstructor& reconstructor) {
     check_signals();
     return source.with([&](T& it) {
+        refuse_other_sensor(it, reconstructor.it);
         const bool more = read_batch(source);
         source.handed_out = true;
         if (!more) return false;

@@ -169,11 +169,12 @@ EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstruct
 EVENTIDE_API eventide_status eventide_reset(eventide_reconstructor* reconstructor);
 
 /** What the network remembers of the scene: bytes, valid until the next call with the same
- * reconstructor, for eventide_restore() of any with the same model and sensor size. */
+ * reconstructor, for eventide_restore() of any with the same model, sensor size and
+ * self_ensemble. */
 EVENTIDE_API eventide_status eventide_state(eventide_reconstructor* reconstructor,
                                             const void** bytes, size_t* size);
 /** A new stream, with what eventide_state() told. EVENTIDE_INPUT where it is none, or that of
- * another model or sensor size: then nothing has changed. */
+ * another model, sensor size or self_ensemble: then nothing has changed. */
 EVENTIDE_API eventide_status eventide_restore(eventide_reconstructor* reconstructor,
                                               const void* bytes, size_t size);
 

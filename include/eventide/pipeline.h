@@ -51,9 +51,14 @@ protected:
     EventSource& operator=(const EventSource&) = default;  ///< yours may be copied
 };
 
+/// Throws Error (usage) where the source's sensor has another size than the reconstructor's: to be
+/// called before the source is read, as what was read is gone.
+EVENTIDE_API void refuse_other_sensor(const EventSource& source,
+                                      const Reconstructor& reconstructor);
+
 /// Pushes what `source` has just read into `batch`: the gap before it, where data were lost, its
 /// events and images, and a live source's clock. Throws what Reconstructor::push() throws, and
-/// Error (usage) where the source's sensor has another size than the reconstructor's.
+/// refuse_other_sensor().
 EVENTIDE_API void push_from(const EventSource& source, const Batch& batch,
                             Reconstructor& reconstructor);
 

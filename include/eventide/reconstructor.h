@@ -137,8 +137,9 @@ public:
     /// becomes the last event window, and its frames no longer wait for later ones.
     void finish(std::optional<SensorTime> end = {});
 
-    /// The next frame at the rate of the options, from the first event's time on. False where it
-    /// has to wait for more events, or after finish() for ever. Throws Error (input) where the
+    /// The next frame at the rate of the options, from the first event's time on, or from the
+    /// first that advance() told. False where it has to wait for more events, or after finish() for
+    /// ever. Throws Error (input) where the
     /// network gives no finite numbers, or for more than a million frames in a row without events
     /// (times that are wrong), which are then skipped.
     bool next(Frame& frame);
@@ -165,11 +166,11 @@ public:
     void reset();
 
     /// What the network remembers of the scene, after the event windows so far: bytes for restore()
-    /// of any Reconstructor of the same model and sensor size.
+    /// of any Reconstructor of the same model, sensor size and self_ensemble.
     std::vector<std::byte> state() const;
 
     /// reset(), and the network remembers what state() told. Throws Error (input) where these are
-    /// no state, or one of another model or sensor size: then nothing has changed.
+    /// no state, or one of another model, sensor size or self_ensemble: then nothing has changed.
     void restore(std::span<const std::byte> state);
 
     /// state() as a file, which restore_state() and `eventide run --state-in` read. Throws Error:

@@ -37,7 +37,9 @@ public:
 
     /// Must follow what was written before in time. Throws Error: usage for an event earlier than
     /// the one before it or outside of the sensor, a time more than 2^60 us from zero, what the
-    /// format cannot hold and after finish(), failed where the disk is full.
+    /// format cannot hold and after finish(), failed where the disk is full. Where the order, the
+    /// sensor or a time were wrong, nothing has changed; after any other error the recording cannot
+    /// be written on or finished.
     void write(std::span<const Event> events);
 
     /// The same with images, inertial samples and triggers. Kinds that the format has no records

@@ -63,7 +63,7 @@ private:
 }  // namespace
 
 FilterChain::FilterChain(const std::vector<std::string>& texts, const SensorPixels& size)
-    : size_(size) {
+    : size_before_(size), size_(size) {
     for (const std::string& text : texts) add(text);
 }
 
@@ -73,6 +73,17 @@ void FilterChain::add(const std::string& text) {
     link.text = text;
     link.filter = std::move(filter);
     size_ = link.filter->size();
+}
+
+void FilterChain::restart() {
+    std::vector<std::unique_ptr<DataFilter>> anew;
+    SensorPixels size = size_before_;
+    for (const Link& link : links_) {
+        anew.push_back(make_data_filter(link.text, size));
+        size = anew.back()->size();
+        if (first_) anew.back()->count_from(*first_);
+    }
+    for (std::size_t i = 0; i < anew.size(); ++i) links_[i].filter = std::move(anew[i]);
 }
 
 ColourFilter FilterChain::pattern(ColourFilter before) const {
@@ -98,7 +109,7 @@ void FilterChain::process(Batch& batch) {
 
 /// Times count from the recording's first event, whatever filters leave of the beginning.
 void FilterChain::process_piece(Batch& batch) {
-    if (!counts_ && !batch.events.empty()) count_from(batch.events.front().t);
+    if (!first_ && !batch.events.empty()) count_from(batch.events.front().t);
     for (Link& link : links_) {
         const std::size_t before = batch.events.size();
         link.filter->process(batch);

@@ -8,6 +8,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,14 @@ public:
     void process(Batch& batch);
     /// Tells when the recording's first event was, where that is not the first that is processed.
     void count_from(SensorTime first) {
-        counts_ = true;
+        first_ = first;
         for (Link& link : links_) link.filter->count_from(first);
     }
+    /// Whether that is known, or was seen.
+    bool knows_first() const { return first_.has_value(); }
+    /// What comes next are data of another place: what filters remember of those before means
+    /// nothing there. Throws Error (usage) as the constructor, and is then as it was.
+    void restart();
 
     /// Events that the filters left out, together. Thread: any.
     std::uint64_t left_out() const;
@@ -46,11 +52,12 @@ private:
     };
     void process_piece(Batch& batch);
 
-    SensorPixels size_;
+    const SensorPixels size_before_;
+    SensorPixels size_;  // behind the last
     Batch piece_;
     BatchPieces pieces_;
-    std::deque<Link> links_;  // counters stay where they are
-    bool counts_ = false;     // the first event's time is known
+    std::deque<Link> links_;           // counters stay where they are
+    std::optional<SensorTime> first_;  // event of the recording
 };
 
 /// A source as it looks behind filters. Its parsers share the chain: one is used at a time.

@@ -72,7 +72,7 @@ std::string choose_camera(const Hdf5File& file, const Pair& pair, const std::str
 }
 
 bool is_side(double side) {
-    return side >= 1 && side <= kLargestSensorSide && side == double(int(side));
+    return side >= 1 && side <= kLargestRecordedSide && side == double(int(side));
 }
 
 void set_size(StreamHeader& header, double width, double height) {

@@ -72,6 +72,27 @@ TEST_F(AskedFrames, ThatWentAheadLeaveThoseOfTheFrameClockRightAndAllThere) {
     }
 }
 
+/// Frames of a silence that next() passed over are no frames in a row.
+TEST_F(AskedFrames, OfASilenceThatWasPassedOverAreNotCounted) {
+    ReconstructorOptions options = repeatable("50ms", 0);
+    options.fps = "1000000";
+    Reconstructor reconstructor = this->reconstructor(options);
+    const auto events_from = [](std::int64_t begin_us) {
+        std::vector<Event> events;
+        for (int i = 0; i < 100; ++i)
+            events.push_back(
+                {from_us(begin_us + 1000 * i), std::uint16_t(i % 64), 5, Polarity::on});
+        return events;
+    };
+    reconstructor.push(events_from(0));
+    reconstructor.advance(from_us(3'000'000));
+    reconstructor.newest();
+    reconstructor.push(events_from(3'000'000));
+    reconstructor.newest();
+    Frame frame;
+    EXPECT_TRUE(reconstructor.next(frame));
+}
+
 TEST_F(AskedFrames, LeaveAllThoseOfTheFrameClock) {
     const std::vector<Event> events = events_of(recording());
     for (const int lookahead : {0, 1, 2}) {

@@ -210,7 +210,8 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     options.struct_size = 9999;
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
     EXPECT_TRUE(said("struct_size"));
-    for (const std::size_t size : {std::size_t{0}, sizeof options.struct_size - 1}) {
+    for (const std::size_t size :
+         {std::size_t{0}, sizeof options.struct_size - 1, sizeof options.struct_size + 4}) {
         options.struct_size = size;
         EXPECT_EQ(open_with(options), EVENTIDE_USAGE) << size;
     }

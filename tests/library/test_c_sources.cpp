@@ -137,7 +137,7 @@ TEST_F(CSources, WarnsOfWhatHadToBeGuessed) {
     EXPECT_EQ(open_log(0, 0), EVENTIDE_OK) << "nobody to tell";
     callbacks.struct_size = sizeof callbacks + 1;
     EXPECT_EQ(open_log(64, 48), EVENTIDE_USAGE);
-    EXPECT_TRUE(said("callbacks: expected a struct_size of 8 to 32, found 33"))
+    EXPECT_TRUE(said("callbacks: expected a struct_size of 8 to 32, a multiple of 8, found 33"))
         << eventide_error_message();
     EXPECT_EQ(warnings.size(), 0U);
 }
@@ -189,7 +189,8 @@ TEST_F(CSources, OfARecordingOfSeveralCamerasOneIsChosen) {
     options.struct_size = sizeof options + 1;
     EXPECT_EQ(eventide_recording_open_with(recording().c_str(), &options, nullptr, &source),
               EVENTIDE_USAGE);
-    EXPECT_TRUE(said("recording options: expected a struct_size of 8 to 32, found 33"))
+    EXPECT_TRUE(
+        said("recording options: expected a struct_size of 8 to 32, a multiple of 8, found 33"))
         << eventide_error_message();
 }
 

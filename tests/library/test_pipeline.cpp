@@ -63,6 +63,41 @@ protected:
     }
 };
 
+/// A DAVIS gives an image when it has been read out, and so long after its time.
+TEST_F(Pipelines, GiveTheFramesOfAReconstructorWhereTheFirstImageComesLate) {
+    class LateImage final : public EventsInMemory {
+    public:
+        using EventsInMemory::EventsInMemory;
+        bool read(Batch& batch) override {
+            if (!EventsInMemory::read(batch)) return false;
+            if (++batches_ == 12) {
+                ReferenceImage image;
+                image.t = image.exposure_begin = image.exposure_end = batch.events.front().t;
+                image.pixels = Array2<std::uint16_t>(48, 64);
+                for (int x = 0; x < 64; ++x)
+                    for (int y = 0; y < 48; ++y) image.pixels(y, x) = std::uint16_t(1000 * x);
+                batch.add_image(std::move(image));
+            }
+            return true;
+        }
+
+    private:
+        int batches_ = 0;
+    };
+    const std::vector<Event> events = events_of(recording());
+    for (const int lookahead : {0, 2}) {
+        LateImage source{events, 100}, again{events, 100};
+        Collector sink;
+        EventPipeline pipeline{source, {&sink}, model(), options("5ms", lookahead, true)};
+        pipeline.run();
+        Reconstructor reconstructor = LibraryTest::reconstructor(repeatable("5ms", lookahead));
+        std::string frames;
+        for (Frame frame; read_frame(again, reconstructor, frame);) append_frame(frame, frames);
+        EXPECT_EQ(reconstructor.counters().used_images, 1U);
+        EXPECT_TRUE(sink.bytes == frames) << lookahead;
+    }
+}
+
 TEST_F(Pipelines, OfARecordingGiveTheFramesOfEventideRun) {
     for (const bool sequential : {false, true}) {
         EventReader reader{recording()};

@@ -63,6 +63,25 @@ TEST_F(FiltersOfSources, CountTimesFromTheFirstEventOfTheRecordingAlsoAfterASeek
     EXPECT_GT(events.back().t, end - SensorDuration{5'000});
 }
 
+TEST_F(FiltersOfSources, RememberNothingOfWhatWasReadBeforeASeek) {
+    const SensorTime middle = events_of(recording()).front().t + SensorDuration{150'000};
+    for (const std::string filter : {"refractory:20ms", "background-activity:5ms", "subsample:7",
+                                     "flicker", "hot-pixels:learn", "time:100ms..200ms"}) {
+        EventReader fresh{recording()}, reader{recording()};
+        fresh.add_filter(filter);
+        reader.add_filter(filter);
+        const std::vector<Event> all = rest_of(fresh);
+        rest_of(reader);
+        reader.seek(SensorTime::min());
+        EXPECT_EQ(rest_of(reader), all) << filter;
+        EventReader sought{recording()};
+        sought.add_filter(filter);
+        sought.seek(middle);
+        reader.seek(middle);
+        EXPECT_EQ(rest_of(reader), rest_of(sought)) << filter;
+    }
+}
+
 TEST_F(FiltersOfSources, OfACameraLeaveWhatTheySay) {
     EventCamera camera{"sim:demo?seconds=0.1&size=64x48&speed=max"};
     camera.add_filter("polarity:on");

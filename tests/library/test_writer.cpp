@@ -2,6 +2,7 @@
 #include "tests/library/library_test.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -136,6 +137,49 @@ TEST_F(Recordings, CountWhatTheyDoNotHoldOnceTheRestIsAccepted) {
     batch.events[0].x = 63;
     writer.write(batch);
     EXPECT_EQ(writer.not_held(), 1U);
+}
+
+/// A part of the batch may be in the file by then.
+TEST_F(Recordings, EndWithABatchThatTheirFormatCannotHold) {
+    const auto at = [](std::int64_t t_us, int x) {
+        return Event{from_us(t_us), std::uint16_t(x), 2, Polarity::on};
+    };
+    for (const std::string format : {"aedat3", "aedat4", "evt3"}) {
+        const std::string file = temp_ / ("ended." + format);
+        EventWriter writer{file, {"", "", "", 40000, 48}, {format, false}};
+        writer.write(std::vector{at(1, 5)});
+        EXPECT_NE(error_of([&] { writer.write(std::vector{at(2, 5), at(3, 39999)}); }), "");
+        for (const auto& then :
+             {std::function<void()>{[&] { writer.write(std::vector{at(2, 5)}); }},
+              {[&] { writer.finish(); }}})
+            EXPECT_NE(error_of(then).find("one of which a write failed"), std::string::npos)
+                << format;
+        EXPECT_FALSE(std::filesystem::exists(file)) << format;
+    }
+}
+
+TEST_F(Recordings, OfTheLargestSensorsComeBack) {
+    for (const auto& [format, side] : {std::pair{"hdf5", 5000}, {"aedat4", 32768}}) {
+        const std::string file = temp_ / (std::string{"large."} + format);
+        const std::vector<Event> corner{
+            {from_us(1), std::uint16_t(side - 1), std::uint16_t(side - 1), Polarity::on}};
+        EventWriter writer{file, {"", "", "", side, side}, {format, false}};
+        writer.write(corner);
+        writer.finish();
+        EXPECT_EQ(EventReader{file}.width(), side);
+        EXPECT_EQ(events_of(file), corner);
+    }
+}
+
+TEST_F(Recordings, HoldNoImageThatTheirReaderLeavesOut) {
+    for (const std::string format : {"aedat4", "aedat3"}) {
+        Batch batch;
+        batch.images.resize(1);
+        batch.images[0].pixels = Array2<std::uint16_t>(4, 6);
+        batch.images[0].x0 = -1;
+        EventWriter writer{temp_ / ("beyond." + format), {"", "", "", 64, 48}, {format, false}};
+        EXPECT_NE(error_of([&] { writer.write(batch); }).find("-1, 0"), std::string::npos);
+    }
 }
 
 TEST_F(Recordings, HoldImagesSamplesAndTriggersOfTimesThatAreReadOnly) {

@@ -342,6 +342,27 @@ class Pipelines(RecordedTest):
             gc.collect()
             self.assertIsNone(pipeline())
 
+    def test_one_that_never_ran_is_freed_with_its_owner(self):
+        class Owner:
+            def __init__(self, source, **options):
+                self.pipeline = eventide.Pipeline(source, self.sink, "small", **options)
+
+            def sink(self, frame):
+                pass
+
+        class Source(list):
+            width, height = 64, 48
+
+        owner = weakref.ref(Owner([self.events()], width=64, height=48))
+        source = Source([self.events()])
+        source.pipeline = eventide.Pipeline(source, lambda frame: None, "small")
+        reader = weakref.ref(Owner(eventide.open(self.recording)))
+        knows_it = weakref.ref(source)
+        del source
+        gc.collect()
+        for freed in owner, knows_it, reader:
+            self.assertIsNone(freed())
+
     def test_its_options_are_those_of_the_reconstructor(self):
         def shown(frame):
             return frame.t, frame.intensity.tobytes(), None if frame.sigma is None else frame.sigma.tobytes()

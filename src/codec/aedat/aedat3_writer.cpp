@@ -66,8 +66,11 @@ void append_event(const Event& event, std::vector<std::byte>& out) {
 void append_image(const ReferenceImage& image, ColourFilter of_sensor,
                   std::vector<std::byte>& out) {
     const std::size_t bytes = Aedat3Packet::kFrameHeaderBytes + 2 * image.pixels.values().size();
-    if (image.pixels.empty() || bytes > Aedat3Packet::kMaxFrameBytes || image.x0 < 0 ||
-        image.y0 < 0)
+    if (image.x0 < 0 || image.y0 < 0)
+        throw Error(ErrorKind::usage,
+                    "AEDAT 3.1: expected a frame within the sensor, found one at " +
+                        std::to_string(image.x0) + ", " + std::to_string(image.y0));
+    if (image.pixels.empty() || bytes > Aedat3Packet::kMaxFrameBytes)
         throw Error(ErrorKind::usage, "AEDAT 3.1: expected a frame of 1 to 2048 x 2048 px, found " +
                                           std::to_string(image.pixels.width()) + "x" +
                                           std::to_string(image.pixels.height()));

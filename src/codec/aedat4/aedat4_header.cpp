@@ -29,7 +29,7 @@ std::string_view attribute(std::string_view tag, std::string_view key) {
 
 int number(std::string_view text) {
     const int value = number_in<int>(text).value_or(0);
-    return value > 0 && value <= 32767 ? value : 0;
+    return value > 0 && value <= 32768 ? value : 0;
 }
 
 /// Walks through nodes and attributes; depth is bounded by the text itself.

@@ -184,6 +184,9 @@ void Aedat4Writer::write_image(const ReferenceImage& image, std::vector<std::byt
     const int width = channels > 0 ? image.pixels.width() / channels : 0;
     if (channels != 1 && channels != 3 && channels != 4)
         throw cannot_hold("an image of " + std::to_string(channels) + " channels");
+    if (image.x0 < 0 || image.y0 < 0)
+        throw cannot_hold("an image that begins at " + std::to_string(image.x0) + ", " +
+                          std::to_string(image.y0) + ", beyond the sensor's edge");
     if (std::max({width, image.pixels.height(), image.x0, image.y0}) > 32767)
         throw cannot_hold("an image of more than 32767 px");
     const bool eight_bits =

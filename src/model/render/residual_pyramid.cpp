@@ -26,8 +26,9 @@ void ResidualPyramid::Band::fade() noexcept {
 ResidualPyramid::ResidualPyramid(int width, int height) {
     for (int k = 0; k < kMaxBands && (k == 0 || std::min(width, height) > 1); ++k) {
         Band band;
-        for (Array2<float>* map : {&band.events, &band.rho, &band.rho_before, &band.known,
-                                   &band.where, &band.mean, &band.part, &band.sum})
+        for (Array2<float>* map :
+             {&band.events, &band.rho, &band.rho_before, &band.known, &band.where,
+              &band.where_before, &band.weight, &band.mean, &band.part, &band.sum})
             *map = Array2<float>(height, width);
         band.reach = kForgottenPerEvent / float(1 << k);
         bands_.push_back(std::move(band));
@@ -41,7 +42,8 @@ ResidualPyramid::ResidualPyramid(int width, int height) {
 void ResidualPyramid::reset() noexcept {
     for (Band& band : bands_) {
         for (Array2<float>* map : {&band.events, &band.known}) fill(*map, 0);
-        for (Array2<float>* map : {&band.rho, &band.rho_before, &band.where}) fill(*map, 1);
+        for (Array2<float>* map : {&band.rho, &band.rho_before, &band.where, &band.where_before})
+            fill(*map, 1);
     }
 }
 
@@ -54,6 +56,7 @@ void ResidualPyramid::forget(const Array2<float>& events) noexcept {
         for (std::size_t i = 0; i < band.events.values().size(); ++i)
             band.events.values()[i] += now->values()[i];
         copy(band.rho, band.rho_before);
+        copy(band.where, band.where_before);
         band.fade();
     }
 }
@@ -71,6 +74,7 @@ void ResidualPyramid::observe(const Array2<float>& trust, const Array2<float>& e
         k == 0 ? copy(events, band.events) : halve(bands_[k - 1].events, band.events);
         band.fade();
         copy(band.rho, band.rho_before);
+        fill(band.where_before, 1);
     }
 }
 
@@ -79,23 +83,32 @@ void ResidualPyramid::know(const Array2<float>& where) noexcept {
         k == 0 ? copy(where, bands_[k].where) : halve(bands_[k - 1].where, bands_[k].where);
 }
 
+/// c_k = min(1, 4 w_k), c_0 = w_0, with w_k the mean of where the residual is known: what a band
+/// may add to what those below it tell of around.
+float ResidualPyramid::reach_of(std::size_t band, float where) {
+    return std::min(1.F, (band == 0 ? 1.F : 4.F) * where);
+}
+
 /// m_k: mean of the residual over 2^k x 2^k px, weighted by where it is known, whose own mean is
-/// w_k; from the coarsest on
+/// w_k, linear in time as rho_k is; from the coarsest on
 ///
 ///     r_k = c_k (m_k - up(m'_{k+1})),    m'_k = up(m'_{k+1}) + r_k
-///     c_k = min(1, 4 w_k),    c_0 = w_0
 ///
 ///     correction = sum over k of up(rho_k r_k)
 void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& correction,
                               float at) noexcept {
+    for (Band& band : bands_)
+        for (std::size_t i = 0; i < band.weight.values().size(); ++i)
+            band.weight.values()[i] =
+                mix(band.where_before.values()[i], band.where.values()[i], at);
     copy(residual, bands_.front().mean);
     for (std::size_t k = 1; k < bands_.size(); ++k) {
         Band &band = bands_[k], &finer = bands_[k - 1];
         for (std::size_t i = 0; i < finer.sum.values().size(); ++i)
-            finer.sum.values()[i] = finer.mean.values()[i] * finer.where.values()[i];
+            finer.sum.values()[i] = finer.mean.values()[i] * finer.weight.values()[i];
         halve(finer.sum, band.mean);
         for (std::size_t i = 0; i < band.mean.values().size(); ++i) {
-            const float weight = band.where.values()[i];
+            const float weight = band.weight.values()[i];
             band.mean.values()[i] /= weight > 0 ? weight : 1;
         }
     }
@@ -104,11 +117,10 @@ void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& corr
         const Band* coarser = k + 1 < bands_.size() ? &bands_[k + 1] : nullptr;
         fill(band.sum, 0);
         if (coarser) add_doubled(coarser->mean, band.sum);
-        const float whole = k == 0 ? 1 : 4;
         for (std::size_t i = 0; i < band.mean.values().size(); ++i) {
-            const float weight = std::min(1.F, whole * band.where.values()[i]);
             const float around = band.sum.values()[i];
-            band.part.values()[i] = weight * (band.mean.values()[i] - around);
+            band.part.values()[i] =
+                reach_of(k, band.weight.values()[i]) * (band.mean.values()[i] - around);
             band.mean.values()[i] = around + band.part.values()[i];
         }
         Array2<float>& sum = k == 0 ? correction : band.sum;
@@ -120,7 +132,7 @@ void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& corr
     }
 }
 
-/// left = sum over k of up(s_k (1 - (u_k rho_k)^2)).
+/// left = sum over k of up(s_k (1 - (u_k rho_k c_k)^2)).
 void ResidualPyramid::variance(Array2<float>& left) noexcept {
     for (std::size_t k = bands_.size(); k-- > 0;) {
         Band& band = bands_[k];
@@ -128,7 +140,8 @@ void ResidualPyramid::variance(Array2<float>& left) noexcept {
         fill(sum, 0);
         if (k + 1 < bands_.size()) add_doubled(bands_[k + 1].sum, sum);
         for (std::size_t i = 0; i < sum.values().size(); ++i) {
-            const float known = band.rho.values()[i] * band.known.values()[i];
+            const float known =
+                band.rho.values()[i] * band.known.values()[i] * reach_of(k, band.where.values()[i]);
             sum.values()[i] += band.share * (1 - known * known);
         }
     }

@@ -36,27 +36,30 @@ public:
     /// events per pixel that have come since, which count as if forget() had been told.
     void observe(const Array2<float>& trust, const Array2<float>& events) noexcept;
 
-    /// Where residuals are known from now on, 0 to 1; elsewhere the coarser bands of what is around
-    /// go on. All of them, after reset().
+    /// Where residuals are known at the end of the time that forget() told of last, 0 to 1;
+    /// elsewhere the coarser bands of what is around go on. All of them, after reset().
     void know(const Array2<float>& where) noexcept;
 
     /// What to add to a frame that lacks `residual`; [y][x]. Not the same array. `at`: where in the
     /// time that forget() told of last, 1 at its end; an observe() after it counts for all of that.
     void correct(const Array2<float>& residual, Array2<float>& correction, float at = 1) noexcept;
 
-    /// Which share of the model's variance is left; [y][x].
+    /// Which share of the model's variance is left at that end; [y][x].
     void variance(Array2<float>& left) noexcept;
 
 private:
+    static float reach_of(std::size_t band, float where);
+
     struct Band {
-        Array2<float> events;           // per pixel, since the image
-        Array2<float> rho;              // by these
-        Array2<float> rho_before;       // and before the last of them
-        Array2<float> known;            // rho when the image was taken
-        Array2<float> where;            // residuals are known
-        Array2<float> mean, part, sum;  // scratch of correct()
-        float reach = 1;                // a / 2^k
-        float share = 0;                // s_k
+        Array2<float> events;                   // per pixel, since the image
+        Array2<float> rho;                      // by these
+        Array2<float> rho_before;               // and before the last of them
+        Array2<float> known;                    // rho when the image was taken
+        Array2<float> where;                    // residuals are known
+        Array2<float> where_before;             // and were at the end of the time before
+        Array2<float> weight, mean, part, sum;  // scratch of correct()
+        float reach = 1;                        // a / 2^k
+        float share = 0;                        // s_k
         void fade() noexcept;
     };
     std::vector<Band> bands_;
