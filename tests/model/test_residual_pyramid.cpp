@@ -210,5 +210,41 @@ TEST(ResidualPyramid, WhereNothingIsKnownWhatIsKnownAroundGoesOn) {
     for (const float v : nothing.correction.values()) EXPECT_EQ(v, 0);
 }
 
+TEST(ResidualPyramid, VarianceIsTheModelsWhereNothingIsKnownNow) {
+    const int size = 64;
+    Array2<float> where = constant(size, size, 1);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < 32; ++x) where(y, x) = 0;
+    ResidualPyramid pyramid = observed(size, size);
+    pyramid.know(where);
+    const Array2<float> left = expect(pyramid, constant(size, size, .2F)).variance;
+    EXPECT_GT(left(32, 2), .7F) << "but for the coarsest bands";
+    EXPECT_LT(left(32, 61), .1F);
+    pyramid.know(constant(size, size, 0));
+    for (const float v : expect(pyramid, constant(size, size, .2F)).variance.values())
+        EXPECT_NEAR(v, 1, 1e-5);
+}
+
+/// Frames at the end of a window and at the begin of the next are alike.
+TEST(ResidualPyramid, WhereItIsKnownChangesLinearlyInTime) {
+    const int size = 32;
+    const Array2<float> residual = noise(size, size, 5);
+    ResidualPyramid pyramid = observed(size, size);
+    const auto at = [&](float time) {
+        Array2<float> correction(size, size);
+        pyramid.correct(residual, correction, time);
+        return correction(16, 16);
+    };
+    pyramid.know(constant(size, size, .8F));
+    pyramid.forget(constant(size, size, .1F));
+    pyramid.know(constant(size, size, .8F));
+    const float before = at(1);
+    pyramid.forget(constant(size, size, 0));
+    pyramid.know(constant(size, size, 0));
+    EXPECT_FLOAT_EQ(at(0), before);
+    EXPECT_NE(at(.5F), 0);
+    EXPECT_EQ(at(1), 0);
+}
+
 }  // namespace
 }  // namespace eventide
