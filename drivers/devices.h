@@ -17,15 +17,16 @@ struct CameraOptions {
     bool reconnect = false;          ///< wait for an unplugged camera to come back
     /// Asked while a camera that has to be waited for is opened: true gives up. May be empty.
     std::function<bool()> give_up = {};
-    /// For people: why a camera was passed over, or is waited for and not back yet, once each.
-    /// Source thread. May be empty.
+    /// Told, in sentences for people, why a camera was passed over, or is waited for and not back
+    /// yet, once each. Source thread. May be empty.
     std::function<void(const std::string&)> warn = {};
 };
 
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
 bool names_camera(std::string_view source);
 
-/// For what reads recordings alone: whether `source` names a camera or a simulation, and no file.
+/// Whether `source` names a camera or a simulation, and no file: for commands that read recordings
+/// alone.
 bool names_device_alone(const std::string& source);
 
 /// "; did you mean davis:?" where a source that is none is nearly one, with a colon or without;

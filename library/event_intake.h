@@ -25,7 +25,7 @@ public:
 
     /// A step back in time is disorder.
     void push(std::span<const Event> events, HostTime arrived = Clock::now());
-    /// A step back in time is a new clock.
+    /// A step back in time is a clock reset.
     void push(const Batch& batch, HostTime arrived = Clock::now());
     void advance(SensorTime now);
     void mark_gap() noexcept { slicer_.mark_gap(); }
@@ -33,10 +33,10 @@ public:
     bool is_finished() const { return finished_; }
     bool next(EventWindow& event_window) { return slicer_.next(event_window); }
 
-    /// From now on the images pushed are held, for next_image().
+    /// Images pushed from now on are held for next_image(); before, only their times are used.
     void hold_images() { holds_images_ = true; }
-    /// The next of those that the stream had told when the event window given last could first be
-    /// cut: however late it was taken, the same. In grey.
+    /// The next image, in grey, of those that had been pushed when the event window given last
+    /// could first be cut: the same images however late the window is taken.
     std::optional<ReferenceImage> next_image();
     bool has_images() const { return !images_.empty(); }
 

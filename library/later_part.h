@@ -11,8 +11,9 @@
 namespace eventide {
 
 /// Formats can jump to some place before a time only, many to the beginning alone. Once an event of
-/// that time or a later one has come, all events are passed on: those that are earlier then are of
-/// a new clock. Images come behind the events of their time: early ones are left out until then.
+/// that time or a later one has come, all events are passed on: those that are earlier then come
+/// after a clock reset. Images come behind the events of their time: early ones are left out until
+/// then.
 class LaterPart {
 public:
     void begin(SensorTime t) {

@@ -9,7 +9,7 @@ namespace eventide {
 
 class SourceFilters {
 public:
-    /// Behind a source of that sensor.
+    /// For a source with this sensor; no filter at first.
     explicit SourceFilters(const SensorInfo& sensor)
         : sensor_(sensor), info_(sensor), chain_({}, {sensor.width, sensor.height}) {}
 

@@ -45,21 +45,22 @@ public:
     void take(const RawPacket& packet);
     /// As Slicer::change(), except that what is out of range changes nothing.
     void change_window(const SlicerSettings& wanted) noexcept;
-    /// At each of the times (ascending), once all events up to it were cut and before any other is:
-    /// `at` takes the event windows that there are. At none after SlicerSettings::end. Of
-    /// recordings.
+    /// For recordings: calls `at` with each of the times (ascending) once all events up to it have
+    /// been pushed, and before any later one is; `at` takes the event windows that there are. Not
+    /// called for times after SlicerSettings::end.
     void stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at);
     /// Slicer::state().
     std::optional<Slicer::State> state() const { return slicer_.state(); }
-    /// Goes on from such a stop at t: events up to then are left out, whatever the source gives.
+    /// Goes on from a state() taken at a stop at t: events up to t are left out, should the source
+    /// give them again.
     /// Throws as Slicer::restore().
     void resume(SensorTime t, const Slicer::State& memory);
     /// After the last packet. Where the end was asked for, half a record in hand is no damage.
     enum class End { of_source, asked_for };
     void finish(End end);
     bool next(EventWindow& event_window);
-    /// Images of the stream that had come when the window given last could first be cut: however
-    /// late it was, the same.
+    /// How many images of the stream had come when the event window given last could first be cut:
+    /// the same number however late the window is taken.
     std::uint64_t images() const { return images_; }
     bool is_past_end() const { return slicer_.is_past_end(); }
     std::optional<SensorTime> end() const { return slicer_.end(); }  ///< Slicer::end()

@@ -59,7 +59,7 @@ public:
     /// The frames with begin < t <= end become due; the first event window's include its begin.
     void open(Window window);
 
-    /// Of the open event window: how many are still due, and the next of them.
+    /// How many frames of the open event window are still due, and the next of them.
     std::uint64_t due() const { return end_ - next_; }
     std::uint64_t next_index() const { return next_; }
     DueFrame next();
@@ -71,7 +71,7 @@ public:
     /// after the last; indices go on.
     void change_rate(const FrameRate& rate);
 
-    /// The sensor's clock begins anew; indices go on.
+    /// Clock reset: the next event window is of a new stream; indices go on.
     void restart();
 
 private:

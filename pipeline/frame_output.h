@@ -27,7 +27,7 @@ struct Encoded {
 };
 
 /// Render thread. A frame whose time lies in event window k is rendered when latent map k +
-/// lookahead has come; at the end of the stream, and before the camera's clock begins anew, without
+/// lookahead has come; at the end of the stream, and before a clock reset, without
 /// those that will not come (the live edge).
 class FrameOutput {
 public:

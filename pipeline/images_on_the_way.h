@@ -20,7 +20,7 @@ class ImagesOnTheWay {
 public:
     static constexpr std::size_t kKeptLive = 64, kAll = std::numeric_limits<std::size_t>::max();
 
-    /// Of more than so many the oldest are dropped. Before the first.
+    /// At most so many are kept, and the oldest are dropped. Call it before the first put().
     void keep_at_most(std::size_t images) { most_ = images; }
     std::size_t most() const { return most_; }
 

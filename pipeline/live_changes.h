@@ -17,7 +17,7 @@ public:
     struct Wanted {
         std::optional<FrameRate> rate;  ///< of sensor time
         std::optional<int> lookahead;   ///< 0 to 2 event windows
-        /// Of the clock's frames every 2^n-th is rendered.
+        /// n: every 2^n-th of the clock's frames is rendered.
         std::optional<unsigned> halvings;
         struct Pixels {
             int width = 0, height = 0;

@@ -15,7 +15,7 @@ namespace eventide {
 
 class ModelRenderStage final : public RenderStage {
 public:
-    /// Of the request everything but `t` holds for all frames; its lookahead is the pipeline's.
+    /// `request` holds for all frames, except for its `t`; its lookahead is the pipeline's.
     ModelRenderStage(Renderer& renderer, const RenderRequest& request)
         : renderer_(renderer), request_(request) {}
     /// Frames are corrected by `images`, into which every image of the source is put; needs
@@ -75,7 +75,7 @@ public:
     }
 
 private:
-    /// By the images that came before the map's window was cut.
+    /// Gives the correction the images that came before the map's window was cut, then the window.
     void correct(const LatentMap& latent) noexcept {
         if (!fused_) return;
         fused_->give_all([&] { return images_->take(latent.images); });

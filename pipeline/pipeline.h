@@ -31,7 +31,7 @@ struct PipelineBuffers {
     std::size_t packets = 64, grids = 3, latents = 4;  ///< each at least 1
 };
 
-/// Of a recording, which waits: it needs no more than one being filled and one being read, and of
+/// For a recording, which waits: it needs no more than one being filled and one being read, and of
 /// the small packets a few.
 inline constexpr PipelineBuffers kBuffersOfRecording{.packets = 8, .grids = 2, .latents = 2};
 
@@ -43,7 +43,7 @@ constexpr std::size_t packets_of_burst(std::size_t packet_bytes) {
     return std::clamp(kBurstBytes / packet_bytes, kFewest, kMost);
 }
 
-/// Of a live source more packets where they are small, of a recording fewer of all.
+/// A live source gets more packets where they are small, a recording fewer buffers of all kinds.
 inline PipelineBuffers buffers_for(const Source& source) {
     return source.is_live() ? PipelineBuffers{.packets = packets_of_burst(source.packet_bytes())}
                             : kBuffersOfRecording;
@@ -55,8 +55,8 @@ struct PipelineSettings {
     FrameRate rate;
     std::optional<SensorTime> frames_from;  ///< earlier event windows only warm up the state
     int lookahead = 0;                      ///< 0, 1 or 2: event windows a frame waits for
-    /// Of a live source: what is left out so that frames are no later than this; empty: nothing,
-    /// and latency is what the buffers hold. A recording waits in any case.
+    /// For a live source: work is left out so that frames are no later than this (LatencyKeeper).
+    /// Empty: latency is what the buffers hold. A recording waits in any case.
     std::optional<HostTime::duration> latency;
     bool reset_on_gap = false;      ///< begin with a new state where bytes were lost
     bool allow_silence = false;     ///< any number of frames in a row without events

@@ -11,7 +11,7 @@
 
 namespace eventide {
 
-/// latent window + time -> frame. One at a time; render thread.
+/// latent maps + time -> frame. One at a time; render thread.
 class RenderStage {
 public:
     virtual ~RenderStage() = default;
@@ -48,11 +48,11 @@ public:
     /// Events become those that come out now; the order stays.
     virtual void process(std::vector<Event>& events) = 0;
 
-    // Of one that holds events back until it knows more; into a vector that is empty.
+    // For filters that hold events back until they know more. The vectors given are empty.
     /// Those that come out as time goes on: no event before `now` will come any more.
     virtual void release(SensorTime, std::vector<Event>&) {}
     virtual void flush(std::vector<Event>&) {}  ///< all of them
-    /// Where all before `now` was processed: no event before this time will come out any more.
+    /// Once all events before `now` were processed, none before this time will come out any more.
     virtual SensorTime known_until(SensorTime now) const { return now; }
     virtual std::size_t held() const { return 0; }
 

@@ -15,7 +15,7 @@ namespace {
 // anyway.
 constexpr SensorDuration kLatestData = std::chrono::milliseconds(500);
 
-/// The part between two times of the clock that the stream begins with. Where that begins anew, all
+/// The part between two times of the clock that the stream begins with. After a clock reset all
 /// that follows lies behind `from`, once that was reached, and nothing before a `to` that was; as
 /// in the slicer of a run.
 class StreamPart {
@@ -23,7 +23,7 @@ public:
     StreamPart(std::optional<SensorTime> from, std::optional<SensorTime> to)
         : from_{from}, to_{to} {}
 
-    /// To the batches one after the other.
+    /// Leaves in `batch` what lies in the part. Call once per batch, in order.
     void keep(Batch& batch) {
         if (!from_ && !to_) return;
         const bool was_anew = is_anew_;
@@ -48,8 +48,9 @@ public:
         keep_inside(batch.triggers);
     }
 
-    /// By the events that came out, not by the parser's clock: that may run ahead of them, and one
-    /// wrong stamp moves it. Those up to `to` are all out then, and none is still held.
+    /// Whether nothing of the part will come any more. By the events that came out, not by the
+    /// parser's clock: that may run ahead of them, and one wrong stamp moves it. Those up to `to`
+    /// are all out then, and none is still held.
     bool is_over() const {
         if (is_anew_ || !to_ || newest_ == SensorTime::min()) return is_over_;
         return newest_ - kLatestData > *to_;

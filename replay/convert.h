@@ -14,8 +14,8 @@
 namespace eventide {
 
 struct ConvertOptions {
-    /// Both included; of the clock that the recording begins with. Where that begins anew, what
-    /// follows lies between them.
+    /// Both included; times of the clock that the recording begins with. What follows a clock reset
+    /// counts as between them.
     std::optional<SensorTime> from{}, to{};
     bool overwrite = false;
     std::function<void(Batch&)> filter = {};    ///< of what lies between the limits; may be empty
@@ -56,7 +56,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target,
                       const ConvertOptions& options = {},
                       const std::function<bool()>& progress = {});
 
-/// To a file of the given format.
+/// The same into a file of the given format.
 ConvertReport convert(Recording& recording, const std::string& path, const Format& format,
                       const ConvertOptions& options = {},
                       const std::function<bool()>& progress = {});

@@ -26,7 +26,7 @@ public:
     /// (an index that does not fit) at the next read().
     virtual void seek(SensorTime t) = 0;
 
-    /// Of the whole file, 0 to 1: how much was read.
+    /// How much of the whole file was read, 0 to 1.
     virtual double progress() const = 0;
 
     /// As Recording::remarks().

@@ -24,13 +24,13 @@ struct FormatHolds {
     bool (*trigger)(const Trigger&) = nullptr;
     /// Its records share one clock: a trigger that comes behind later events has their time.
     bool in_time_order = false;
-    /// Events may step back where the sensor's clock began anew: its readers see a new stream.
+    /// It can say a clock reset: events step back there, and its readers see a new stream.
     bool clock_resets = false;
-    /// Of several cameras, where it is read (OpenOptions::stream).
+    /// It can hold events of several cameras, of which one is read (OpenOptions::stream).
     bool streams = false;
     /// Says which colour filter was before the sensor of images that are mosaics.
     bool colour_filter = false;
-    /// With each image; else for all, before the first.
+    /// It says that filter with each image; else once for all, before the first.
     bool colour_filter_of_each = false;
 };
 
@@ -63,7 +63,7 @@ struct Format {
     /// Set instead of make_writer for what is no stream of bytes.
     std::unique_ptr<FileWriter> (*make_file_writer)(OutputFile& file,
                                                     const StreamHeader& header) = nullptr;
-    /// Of the data behind the header, how much `matches` and `open` look at, bytes.
+    /// How many bytes of the data behind the header `matches` and `open` look at.
     std::size_t looks_at = 1;
 
     bool is_written() const { return make_writer != nullptr || make_file_writer != nullptr; }

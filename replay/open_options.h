@@ -13,8 +13,8 @@ namespace eventide {
 inline constexpr const char* kStateSize =
     "state it with --input-size WIDTHxHEIGHT (the options width and height of the library)";
 
-/// For people: the events of one are left out, as those of another are read, and which `stream` of
-/// OpenOptions reads them.
+/// What to tell people of a recording of several cameras: that the events of `left_out` are not
+/// read, as those of `read` are, and which `stream` (OpenOptions) would read them.
 inline std::string left_out_stream(const std::string& left_out, const std::string& read,
                                    const std::string& stream) {
     return "the events of " + left_out + " are left out, those of " + read +

@@ -1,4 +1,4 @@
-// A recording that gives its bytes when the camera gave them: the only place that sleeps.
+// A recording delivered at the pace it was recorded.
 #pragma once
 
 #include "replay/recording.h"

@@ -16,13 +16,13 @@ struct Summary {
     int width = 0, height = 0;
     std::uint64_t events = 0;
     std::uint64_t on = 0;  ///< of the events
-    /// Of the events; empty where there are none.
+    /// Times of the first and the last event; empty where there are none.
     std::optional<SensorTime> first, last;
     SensorDuration span{};           ///< from first to last, by each of the clocks in turn
-    std::uint64_t clock_resets = 0;  ///< how often the sensor's clock began anew
+    std::uint64_t clock_resets = 0;  ///< how often the sensor's clock was reset
     std::uint64_t frames = 0, imu = 0, triggers = 0;
-    /// Of the events, those that came while light flickered, as FlickerPeriod finds it, and at how
-    /// many Hz it did on the average of them; 0 where it did not.
+    /// Events that came while light flickered, as FlickerPeriod finds it, and its frequency in Hz,
+    /// averaged over them; 0 where it did not.
     std::uint64_t in_flicker = 0;
     double flicker_hz = 0;
     Damage damaged;
@@ -32,7 +32,7 @@ struct Summary {
 /// may return false to stop there.
 Summary summarize(Recording& recording, const std::function<bool()>& progress = {});
 
-/// Of a recording at its beginning, which is read as far as that; empty where it has no event.
+/// Reads on, from the recording's beginning, as far as its first event; empty where it has none.
 std::optional<SensorTime> first_event_time(Recording& recording);
 
 /// One object: format, width, height, events, on, first_us, last_us (null without events),

@@ -5,7 +5,7 @@
 
 namespace eventide::bench {
 
-/// Of frames that skipping made, against frames without it.
+/// How far frames made with skipping differ from frames made without it.
 struct FrameError {
     double most = 0, rms = 0;  ///< of intensity
 };

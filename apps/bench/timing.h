@@ -7,12 +7,12 @@
 
 namespace eventide::bench {
 
-/// Of many repetitions: median, the quartiles beside it, and the least.
+/// What many repetitions gave: median, the quartiles beside it, and the least.
 struct Spread {
     double median = 0, low = 0, high = 0, least = 0;
 };
 
-/// Of no numbers: zeros.
+/// All 0 where there are no values.
 Spread spread_of(std::vector<double> values);
 
 struct Timing {

@@ -11,7 +11,7 @@
 
 namespace eventide::app {
 
-/// By key: what the flags say.
+/// What the flags say, by key.
 using FlagValues = std::map<std::string, std::vector<std::string>>;
 
 /// The command line, once it is understood.

@@ -25,7 +25,7 @@ struct EvaluateSettings {
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
     /// "model" (as the model was trained), "auto", "off" or a time; parse_noise_filter().
     std::string noise_filter = "model";
-    /// Of recordings, as of a camera: parse_lamp_flicker().
+    /// For recordings, and as for a camera, which cannot wait: parse_lamp_flicker().
     std::string lamp_flicker = "auto";
     EngineOptions engine;
     bool fuse_images = false;  ///< images will be given to the model (evaluate_recordings sets it)
@@ -71,7 +71,7 @@ struct SimulatedSettings {
     std::string preset = "thesis_test";  ///< src/simulate/presets.h
     double scale = 1;                    ///< images and truth are so many times larger
     int skip_frames = 4;                 ///< not scored: the state is still empty
-    /// Of the others one in so many is scored: neighbours are too alike to tell more.
+    /// One in so many of the other frames is scored: neighbours are too alike to tell more.
     int score_every = 5;
     std::uint64_t seed = 4000;
 };

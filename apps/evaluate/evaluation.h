@@ -34,7 +34,8 @@ public:
     const EvaluateSettings& settings() const { return settings_; }
     /// None: all events are taken.
     std::optional<NoiseFilterSettings> noise_filter() const { return noise_filter_; }
-    /// For a recording of such a sensor, as a live run has it; null: all events are taken.
+    /// The filter that a live run has, for a recording of such a sensor; null: all events are
+    /// taken.
     std::unique_ptr<EventFilter> filter_for(int width, int height) const;
 
     /// The report, with the means over everything.

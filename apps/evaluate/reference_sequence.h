@@ -21,8 +21,8 @@ class EventFilter;
 struct ReferenceSequence {
     std::string name;  ///< of the folder or file
     int width = 0, height = 0;
-    /// Of the recording's first event or image, also where that was not kept: times in seconds are
-    /// told from here.
+    /// Time of the recording's first event or image, also where that was not kept: times in seconds
+    /// are told from here.
     SensorTime first{};
     Damage damaged;                      ///< what was left out of it, by reason
     std::vector<std::string> warnings;   ///< for people, with its path
@@ -35,7 +35,7 @@ struct ReferenceSequence {
 std::string sequence_name(const std::filesystem::path& path);
 
 /// Reads a recording of any format. Where given, only data in [from, to]
-/// (s from `first`) are kept, which may be none; where the clock began anew, of the part with the
+/// (s from `first`) are kept, which may be none; where the clock was reset, of the part with the
 /// most images. Image times are mended; mosaics, by `bayer` or else by what the recording says, are
 /// in colour. Throws Error(input) where the recording has no events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,

@@ -8,7 +8,7 @@
 
 namespace eventide {
 
-/// To the nearest microsecond.
+/// Rounded to the nearest microsecond.
 inline SensorDuration duration_from_seconds(double seconds) {
     return SensorDuration{std::llround(seconds * 1e6)};
 }

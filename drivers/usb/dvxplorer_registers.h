@@ -84,7 +84,7 @@ inline constexpr Register kActivityTime = chip_register(0x3506);
 inline constexpr Register kActivityMostPositive = chip_register(0x3513);  ///< 16 bits
 inline constexpr Register kHistogramOff = chip_register(0x3600);
 
-/// Of kMode.
+/// Values of kMode.
 inline constexpr std::uint32_t kModeOff = 0, kModeStream = 2;
 
 // In the IMU module, where the DAVIS has other things: a Bosch BMI160.

@@ -55,8 +55,8 @@ public:
 protected:
     UsbCamera(UsbKind kind, UsbCameraOptions options, UsbStreamSettings transfers);
 
-    /// For the end of a kind's constructor and the beginning of its destructor: they call what
-    /// follows below.
+    /// They call the virtual functions below: a derived class calls open() at the end of its
+    /// constructor, and stop_device() at the beginning of its destructor.
     void open();
     void stop_device() noexcept;
 

@@ -14,7 +14,7 @@ struct BiasLine {
     std::string place;  ///< "x.bias:3", "x.json: ll_biases_state.bias[2]"
 };
 
-/// By its extension, .bias or .json.
+/// Whether the extension is that of a file of biases, .bias or .json.
 bool names_bias_file(const std::filesystem::path& file);
 
 /// A .bias file: lines of `VALUE % NAME`, the value decimal or 0x...; what follows the name behind

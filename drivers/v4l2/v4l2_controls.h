@@ -12,7 +12,7 @@
 
 namespace eventide {
 
-/// Of the sensor's driver: what to look at where its node is missing or in use.
+/// What to look at where the node of the sensor's driver is missing, or in use.
 inline constexpr const char* kIfNoSensor = "is the driver loaded and the sensor connected?";
 inline constexpr const char* kIfSensorBusy = "in use by another program";
 

@@ -19,8 +19,8 @@ struct v4l2_format;
 
 namespace eventide {
 
-/// To which format a node is to be set, of that it has and those it offers (fourcc); empty: it
-/// stays as it is.
+/// Chooses the format of a node from the one it has and those it offers (fourcc); empty: it stays
+/// as it is.
 using FormatChoice =
     std::function<std::optional<std::uint32_t>(std::uint32_t, std::span<const std::uint32_t>)>;
 
@@ -51,7 +51,7 @@ public:
     Status read(Filled& into, std::chrono::milliseconds timeout);
 
 private:
-    /// Of the driver's, in our memory until it goes.
+    /// A buffer of the driver's, mapped into our memory for as long as this lives.
     class Buffer {
     public:
         Buffer(void* memory, std::size_t length)

@@ -36,7 +36,7 @@ template <typename T>
 class Array2 {
 public:
     Array2() = default;
-    /// Of zeros. Height and width: at least 0.
+    /// Filled with zeros. Height and width: at least 0.
     Array2(int height, int width)
         : height_(height), width_(width), values_(std::size_t(height) * std::size_t(width)) {}
     Array2(const Array2&) = default;             ///< a copy of all values

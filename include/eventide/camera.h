@@ -18,8 +18,8 @@ namespace eventide {
 
 /// How a camera is opened.
 struct CameraSettings {
-    /// Of settings, as in share/eventide/cameras; empty: the defaults. Simulations and UDP have
-    /// none.
+    /// A file of settings, as in share/eventide/cameras; empty: the defaults. Simulations and UDP
+    /// have none.
     std::filesystem::path file;
     bool reconnect = false;  ///< wait for an unplugged camera to come back
     /// Called every 20 ms or so while a topic's first message is waited for: what it throws comes

@@ -29,7 +29,7 @@ struct SensorInfo {
     ColourFilter colour_filter = ColourFilter::none;  ///< of a colour camera that says so
 };
 
-/// Of a change of brightness.
+/// Which way brightness changed.
 enum class Polarity : std::uint8_t {
     off,  ///< darker
     on,   ///< brighter
@@ -80,7 +80,7 @@ struct ImuSample {
 struct Trigger {
     /// What it marks.
     enum class Kind : std::uint8_t {
-        timestamp_reset,  ///< the sensor's clock began anew
+        timestamp_reset,  ///< the sensor's clock was reset
         rising,           ///< edge
         falling,          ///< edge
         pulse,            ///< both edges in one
@@ -104,13 +104,13 @@ struct Trigger {
 struct Batch {
     std::vector<Event> events;           ///< changes of brightness
     std::vector<ReferenceImage> images;  ///< the sensor's own images, or those beside a recording
-    /// Of each image, in order, how many of `events` came before it; of those beyond this vector's
-    /// end none did.
+    /// For each image, in order, how many of `events` came before it; for those beyond this
+    /// vector's end none did.
     std::vector<std::size_t> image_places;
     std::vector<ImuSample> imu;     ///< inertial samples
     std::vector<Trigger> triggers;  ///< edges, pulses and marks
 
-    /// Of image number i: how many of `events` came before it, at most all.
+    /// How many of `events` came before image number i; at most all.
     std::size_t place_of_image(std::size_t i) const {
         return i < image_places.size() ? std::min(image_places[i], events.size()) : 0;
     }

@@ -3,9 +3,11 @@
  * sizes and coordinates are pixels with the origin at the top left.
  *
  * Functions that can fail return an eventide_status; eventide_error_message() then says what was
- * expected and what was found. Nothing is thrown. A handle is used by one thread at a time,
- * different handles by as many as there are. NULL for a handle is refused, but may be closed, and
- * is what `*opened` becomes where nothing is opened. */
+ * expected and what was found. Nothing is thrown. Any of them may return EVENTIDE_FAILED (too
+ * little memory) and EVENTIDE_USAGE (NULL where its comment does not allow it); its comment names
+ * the others. A handle is used by one thread at a time, different handles by as many as there are.
+ * NULL for a handle is refused, but may be closed, and is what `*opened` becomes where nothing is
+ * opened. */
 #ifndef EVENTIDE_EVENTIDE_H
 #define EVENTIDE_EVENTIDE_H
 
@@ -116,8 +118,9 @@ EVENTIDE_API eventide_status eventide_reconstructor_open(const char* model, int 
 /** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_reconstructor_close(eventide_reconstructor* reconstructor);
 
-/** Events in order of time. One that is earlier than the one before, or outside the sensor, is left
- * out and counted. */
+/** Events in order of time. One that is earlier than the one before, outside the sensor or at an
+ * impossible time is left out and counted (eventide_counters). `events` may be NULL where `count`
+ * is 0. EVENTIDE_USAGE after eventide_finish(). */
 EVENTIDE_API eventide_status eventide_push(eventide_reconstructor* reconstructor,
                                            const eventide_event* events, size_t count);
 
@@ -134,21 +137,29 @@ typedef struct eventide_image {
 } eventide_image;
 
 /** Images in order of time, each before the events that follow its exposure. eventide_read_into()
- * does this by itself. */
+ * does this by itself. EVENTIDE_USAGE after eventide_finish(), for a width or height outside 1 to
+ * 4096 px, a corner further than 4096 px from the sensor's, and an exposure that ends before it
+ * begins. */
 EVENTIDE_API eventide_status eventide_push_image(eventide_reconstructor* reconstructor,
                                                  const eventide_image* image);
 
-/** Every event before `now` has been pushed: time goes on where nothing moves. */
+/** Every event before `now` has been pushed: time goes on where nothing moves. For cameras;
+ * eventide_source_clock() gives such a time. EVENTIDE_USAGE after eventide_finish() and for a time
+ * further than 2^60 us from zero. */
 EVENTIDE_API eventide_status eventide_advance(eventide_reconstructor* reconstructor, int64_t now);
 
-/** Data were lost here. */
+/** Data were lost here: the next frame carries gap_before. */
 EVENTIDE_API eventide_status eventide_mark_gap(eventide_reconstructor* reconstructor);
 
-/** The stream has ended; `end` may be NULL, or the time until which its clock went on. */
+/** The stream has ended; `end` may be NULL, or the time until which its clock went on.
+ * EVENTIDE_USAGE for an end further than 2^60 us from zero: then the stream goes on. */
 EVENTIDE_API eventide_status eventide_finish(eventide_reconstructor* reconstructor,
                                              const int64_t* end);
 
-/** The next frame at the rate of the options; EVENTIDE_NONE where it has to wait for events. */
+/** The next frame at the rate of the options. EVENTIDE_NONE where it has to wait for events, and
+ * after eventide_finish() once all were given. EVENTIDE_INPUT where the network gives no finite
+ * numbers, and for more than a million frames in a row without events (times that are wrong;
+ * options.allow_silence), which are then skipped. */
 EVENTIDE_API eventide_status eventide_next(eventide_reconstructor* reconstructor,
                                            eventide_frame* frame);
 
@@ -160,7 +171,9 @@ EVENTIDE_API eventide_status eventide_ready(eventide_reconstructor* reconstructo
  *  none. */
 EVENTIDE_API eventide_status eventide_newest(eventide_reconstructor* reconstructor, int64_t* t);
 
-/** The frame of one instant that is ready. `size` may be NULL: that of the options. */
+/** The frame of one instant. `size` may be NULL: that of the options. EVENTIDE_USAGE where
+ * eventide_ready() does not return EVENTIDE_OK for `t`, and for an impossible size; EVENTIDE_INPUT
+ * where the network gives no finite numbers. */
 EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstructor, int64_t t,
                                              const eventide_frame_size* size,
                                              eventide_frame* frame);
@@ -182,7 +195,7 @@ EVENTIDE_API eventide_status eventide_restore(eventide_reconstructor* reconstruc
  * EVENTIDE_FAILED where it cannot be written. */
 EVENTIDE_API eventide_status eventide_save_state(eventide_reconstructor* reconstructor,
                                                  const char* file, int overwrite);
-/** eventide_restore() from such a file. */
+/** eventide_restore() from such a file, with the same statuses. */
 EVENTIDE_API eventide_status eventide_restore_state(eventide_reconstructor* reconstructor,
                                                     const char* file);
 
@@ -195,11 +208,11 @@ typedef struct eventide_counters {
     uint64_t filtered;       /**< left out: of hot pixels, or noise */
     uint64_t late;        /**< moved later: eventide_advance() had promised that none would come */
     uint64_t left_out;    /**< more in one microsecond than memory is meant to hold */
-    uint64_t time_resets; /**< the sensor's clock began anew */
+    uint64_t time_resets; /**< how often the sensor's clock was reset */
     uint64_t event_windows;  /**< steps of the network */
     uint64_t frames;         /**< rendered */
     uint64_t used_images;    /**< corrected frames */
-    uint64_t dropped_images; /**< came too late for it, or before the clock began anew */
+    uint64_t dropped_images; /**< came too late for it, or before a clock reset */
 } eventide_counters;
 
 /** The counters so far. */
@@ -280,22 +293,28 @@ EVENTIDE_API eventide_status eventide_reconstructor_open_for(const eventide_sour
                                                              eventide_reconstructor** opened);
 
 /** The next events, valid until the next call with the same source; EVENTIDE_NONE at the end. No
- * events and EVENTIDE_OK: go on. */
+ * events and EVENTIDE_OK: go on. EVENTIDE_INPUT where a recording cannot be read, EVENTIDE_DEVICE
+ * where a camera is lost. */
 EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventide_event** events,
                                            size_t* count);
 
 /** Reads on and pushes what came: events, images, marks of lost data, a camera's clock.
- * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time. */
+ * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time
+ * (eventide_source_clock()). Else as eventide_read() and eventide_push(); EVENTIDE_USAGE also where
+ * the source's sensor has another size than the reconstructor's. */
 EVENTIDE_API eventide_status eventide_read_into(eventide_source* source,
                                                 eventide_reconstructor* reconstructor);
 
 /** The next frame of a source at the rate of the options: reads on until there is one.
- * EVENTIDE_NONE where the source has ended and all its frames were given. */
+ * EVENTIDE_NONE where the source has ended and all its frames were given; else as
+ * eventide_read_into() and eventide_next(). */
 EVENTIDE_API eventide_status eventide_read_frame(eventide_source* source,
                                                  eventide_reconstructor* reconstructor,
                                                  eventide_frame* frame);
 
-/** The newest time the source told so far; EVENTIDE_NONE before the first. */
+/** The newest time the source told so far; EVENTIDE_NONE before the first. Of a camera it is what
+ * eventide_advance() wants: every event before it has been read, and it goes on in silence. At the
+ * end of a recording it is what eventide_finish() wants. */
 EVENTIDE_API eventide_status eventide_source_clock(const eventide_source* source, int64_t* t);
 
 /** Of a recording: goes on from `t`, with the first event and image from then on. A reconstructor

@@ -27,7 +27,7 @@ public:
     virtual const SensorInfo& info() const noexcept = 0;
 
     /// The next data in place of what `batch` held, which may be none. An event earlier than the
-    /// one before it means that the sensor's clock began anew. False at the end, and after stop().
+    /// one before it means that the sensor's clock was reset. False at the end, and after stop().
     /// What it throws ends the run and comes out of it.
     virtual bool read(Batch& batch) = 0;
 
@@ -89,7 +89,7 @@ protected:
 struct PipelineOptions {
     /// As in Reconstructor. `threads` are the network's; the pipeline has four of its own.
     ReconstructorOptions frames{};
-    /// Of a live source: work is left out, and counted, so that frames are no later than this, at
+    /// For a live source: work is left out, and counted, so that frames are no later than this, at
     /// most 10^6 s; 0: only what the buffers have no room for. Any other source waits.
     std::chrono::microseconds latency{250'000};
     bool sequential = false;  ///< all on the caller's thread; the frames are the same

@@ -27,7 +27,7 @@ struct ReaderOptions {
     /// Told each of remarks(), behind the path, by the constructor, out of which comes what it
     /// throws. May be empty.
     std::function<void(const std::string&)> warn{};
-    /// Of a recording with events of several cameras, whose are read, as remarks() name them: the
+    /// In a recording with events of several cameras, whose are read, as remarks() name them: the
     /// topic of a bag; "davis/right" of an HDF5 file; the number of a source of AEDAT 3, or of a
     /// stream of AEDAT 4. Empty: the first.
     std::string stream{};
@@ -62,7 +62,7 @@ public:
 
     /// The next data: `batch` is emptied first and may stay without events where others came.
     /// Events are inside the sensor and in order of time; one earlier than the one before it means
-    /// that the sensor's clock began anew. Images came before the batch's events. False at the end.
+    /// that the sensor's clock was reset. Images came before the batch's events. False at the end.
     /// Throws Error (input) where the file cannot be read; damaged bytes are left out and counted.
     bool read(Batch& batch) override;
 

@@ -68,11 +68,11 @@ struct ReconstructorCounters {
     std::uint64_t filtered = 0;        ///< left out: of hot pixels, or noise
     std::uint64_t late = 0;            ///< moved later: advance() had promised that none would come
     std::uint64_t left_out = 0;        ///< more in one microsecond than memory is meant to hold
-    std::uint64_t time_resets = 0;     ///< the sensor's clock began anew
+    std::uint64_t time_resets = 0;     ///< how often the sensor's clock was reset
     std::uint64_t event_windows = 0;   ///< steps of the network
     std::uint64_t frames = 0;          ///< rendered
     std::uint64_t used_images = 0;     ///< corrected frames
-    std::uint64_t dropped_images = 0;  ///< came too late for it, or before the clock began anew
+    std::uint64_t dropped_images = 0;  ///< came too late for it, or before a clock reset
 };
 
 /// Events of one sensor are pushed as they come, in order of time; frames are asked for. The
@@ -120,8 +120,9 @@ public:
 
     /// The same with images, of all of the sensor or a part of it: they correct frames
     /// (ReconstructorOptions::images), and window "aps" is cut at their times. An event earlier
-    /// than the one before means here that the sensor's clock began anew, as readers and cameras
-    /// tell it: the frames of the time before are finished, and a new stream begins.
+    /// than the one before means here that the sensor's clock was reset, as readers and cameras
+    /// tell it: the frames of the time before are finished, and a new stream begins. Throws Error
+    /// (usage) after finish() and for images of impossible channels, corner or exposure.
     void push(const Batch& batch);
 
     /// Every event before `now` has been pushed: time goes on where nothing moves. For live
@@ -134,7 +135,8 @@ public:
     void mark_gap() noexcept;
 
     /// The stream has ended (at `end`, where its clock went on after the last event): what is left
-    /// becomes the last event window, and its frames no longer wait for later ones.
+    /// becomes the last event window, and its frames no longer wait for later ones. Throws Error
+    /// (usage) for an end beyond kFarthestTime: then the stream goes on.
     void finish(std::optional<SensorTime> end = {});
 
     /// The next frame at the rate of the options, from the first event's time on, or from the

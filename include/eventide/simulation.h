@@ -20,12 +20,13 @@ namespace eventide {
 struct SimulationOptions {
     std::string scene = "demo";     ///< a name in EventSimulation::scenes()
     std::uint64_t seed = 0;         ///< another seed, another scene; 0: the preset's own
-    int width = 240;                ///< px, of the sensor
-    int height = 180;               ///< px, of the sensor
-    double seconds = 4;             ///< length, above 0, up to 1e9; 0: without end
-    double images_per_second = 0;   ///< images of the camera in Batch::images; 0: none
-    double truths_per_second = 25;  ///< 0: none
-    double truth_scale = 1;  ///< truth has (width - 1) scale + 1 columns: corners stay corners
+    int width = 240;                ///< px, of the sensor, 2 to 8192
+    int height = 180;               ///< px, of the sensor, 2 to 8192
+    double seconds = 4;             ///< length of sensor time, up to 1e9; 0: without end
+    double images_per_second = 0;   ///< the camera's, in Batch::images; up to 1e5, 0: none
+    double truths_per_second = 25;  ///< up to 1e5; 0: none
+    /// Above 0, up to 64: truth has (width - 1) scale + 1 columns, so that corners stay corners.
+    double truth_scale = 1;
     /// Folder of images that things look like, or a pack of them (eventide-pack-images); empty:
     /// made-up ones.
     std::filesystem::path textures{};
@@ -91,7 +92,8 @@ private:
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Of one frame, all pixels alike. Numbers as `eventide evaluate` prints them.
+/// Measures of one frame, in which all pixels count alike: the numbers that `eventide evaluate`
+/// prints.
 struct FrameMeasures {
     double mse = 0;   ///< mean of (intensity - truth)^2
     double ssim = 0;  ///< structural similarity (Wang et al. 2004), Gaussian window of 11 px

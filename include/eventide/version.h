@@ -5,11 +5,11 @@
 /// What the shared library shows; everything else in it stays inside.
 #define EVENTIDE_API __attribute__((visibility("default")))
 
-/// Of the headers; counts up where programs may have to be changed.
+/// Of the headers; raised where programs may have to be changed.
 #define EVENTIDE_VERSION_MAJOR 1
-/// Of the headers; counts up where something came to be.
+/// Of the headers; raised when something is added.
 #define EVENTIDE_VERSION_MINOR 0
-/// Of the headers; counts up where something was put right.
+/// Of the headers; raised for fixes.
 #define EVENTIDE_VERSION_PATCH 0
 
 #ifdef __cplusplus
@@ -17,7 +17,8 @@
 /// destroyed, and nothing else.
 namespace eventide {
 
-/// Of the library that is loaded, "1.0.0"; the macros are of the headers it was compiled with.
+/// Version of the library that is loaded, "1.0.0"; the macros tell that of the headers a program
+/// was compiled with.
 EVENTIDE_API const char* version() noexcept;
 
 }  // namespace eventide

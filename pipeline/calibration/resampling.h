@@ -21,8 +21,8 @@ enum class Resampling {
 /// right size already.
 class ResamplingMap {
 public:
-    /// Of `source`, a part of the frame that the places lie in. Beyond half a pixel outside it
-    /// there is nothing.
+    /// `places` are those of the frame; only `source`, a part of it, is given to apply(). Further
+    /// than half a pixel outside it there is nothing.
     ResamplingMap(const SourcePlaces& places, const Region& source);
 
     int source_width() const { return source_width_; }

@@ -27,7 +27,7 @@ struct UndistortionPlan {
 UndistortionPlan plan_undistortion(const Calibration& sensor, int width, int height,
                                    const Region& region);
 
-/// Of the whole undistorted frame.
+/// The calibration of the whole undistorted frame.
 Calibration undistorted_sensor(const UndistortionPlan& plan);
 
 /// Intensity is interpolated cubically, sigma linearly. Where the camera saw nothing, intensity is

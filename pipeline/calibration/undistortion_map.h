@@ -19,10 +19,10 @@ struct SourcePlaces {
 /// the frames that come out.
 Calibration undistorted(const Calibration& calibration);
 
-/// Of `region` of the undistorted frame, which is as large as calibration says, in pixels of the
-/// frame as it is rendered (whole). Plumb bob, rational polynomial and equidistant (OpenCV 4,
-/// calib3d, "Detailed Description" and fisheye). Rays beyond the one at which the lens model turns
-/// back are nowhere: no lens shows a place twice.
+/// Where each pixel of `region` of the undistorted frame, which is as large as calibration says,
+/// lies in the frame as it is rendered (whole). Plumb bob, rational polynomial and equidistant
+/// (OpenCV 4, calib3d, "Detailed Description" and fisheye). Rays beyond the one at which the lens
+/// model turns back are nowhere: no lens shows a place twice.
 SourcePlaces source_places(const Calibration& calibration, const Region& region);
 
 /// The smallest part of the frame that holds all places that lie in it, and `margin` px more each

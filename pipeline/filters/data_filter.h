@@ -24,7 +24,7 @@ public:
     virtual void process(Batch& batch) = 0;
     /// When the recording's first event was; told before the first events are processed.
     virtual void count_from(SensorTime) {}
-    /// Of the sensor as it looks behind the filter.
+    /// Size of the sensor as it looks behind the filter.
     virtual SensorPixels size() const = 0;
     /// The colour filter before its pixels as they lie behind this one; none where what is left of
     /// them is no such pattern.

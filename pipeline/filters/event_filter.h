@@ -43,7 +43,7 @@ public:
     /// What was learned of the scene and its light; hot pixels are of the sensor, and stay.
     void forget_scene() noexcept;
 
-    /// What was learned but for hot pixels, to go on from elsewhere.
+    /// What was learned, except for hot pixels: other filters can go on from it.
     struct State {
         std::optional<FlickerPairs::State> flicker;
         std::optional<NoiseFilter::State> noise;

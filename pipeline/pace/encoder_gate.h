@@ -11,8 +11,9 @@
 namespace eventide {
 
 struct EncoderGateSettings {
-    std::size_t most = 3;                                ///< windows with or before the encoder
-    std::uint64_t most_events = std::uint64_t{1} << 24;  ///< in a merged window
+    std::size_t most = 3;  ///< windows with or before the encoder
+    /// In a merged window: bounds memory as SlicerSettings::max_events does for one that is cut.
+    std::uint64_t most_events = std::uint64_t{1} << 24;
     bool new_state_after_gaps = false;
 };
 

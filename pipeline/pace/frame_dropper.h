@@ -63,10 +63,14 @@ public:
     void took(HostTime::duration work) { learn(frame_s_, seconds(work)); }
 
 private:
-    static constexpr double kShareOfTime = 0.9;  // leaves some for what is not frames
-    static constexpr double kNewShare = 0.1;     // of a new sample in the running mean
+    // Leaves some time for what is not frames. More renders more frames, and has less room for slow
+    // ones before event windows pile up.
+    static constexpr double kShareOfTime = 0.9;
+    // Of a new sample in the running mean: one slow frame hardly counts, a change is learned within
+    // some twenty.
+    static constexpr double kNewShare = 0.1;
 
-    /// Of the numbers that are candidates.
+    /// How many numbers below n are candidates: multiples of 2^halvings_.
     std::uint64_t multiples_below(std::uint64_t n) const {
         const std::uint64_t step = std::uint64_t{1} << halvings_;
         return (n + step - 1) / step;

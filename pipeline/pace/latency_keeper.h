@@ -45,6 +45,7 @@ public:
     void adapt(std::size_t lent) noexcept {
         if (!is_bound_) return;
         const unsigned halvings = halvings_.load(std::memory_order_relaxed);
+        // Well before windows are merged (hands_on()), so that the rate of frames gives way first.
         if (lent > 0 && expected(lent) > bound_s_ / 2) {
             calm_ = 0;
             halvings_.store(std::min(halvings + 1, kMaxHalvings), std::memory_order_relaxed);
@@ -69,7 +70,12 @@ public:
     void frame_took(Duration work) noexcept { frame_s_.learn(seconds(work)); }    ///< render thread
 
 private:
-    static constexpr double kShareOfPackets = 0.25;  // of the bound, for parsing and binning
+    // Of the bound, for parsing and binning; the rest is for the network. More takes longer bursts
+    // of packets before any is lost, and merges event windows sooner.
+    static constexpr double kShareOfPackets = 0.25;
+    // Two: at least a quarter of the frames stays; fewer would leave the network more time, and
+    // show motion in larger jumps. Twenty: a second of windows of 50 ms; fewer would make the rate
+    // swing where the load is just too high, more would keep frames away for longer than it lasts.
     static constexpr unsigned kMaxHalvings = 2, kCalmWindows = 20;
 
     /// What something usually takes, learned by one thread and read by others; 0 where nothing is
@@ -89,7 +95,9 @@ private:
         }
 
     private:
-        static constexpr int kFirst = 8;
+        static constexpr int kFirst = 8;  // samples, of which the least counts
+        // A lasting change is learned within some ten samples; a single pause counts as kOutlier
+        // times the usual at most. More of either learns sooner, and takes pauses for load.
         static constexpr double kNewShare = 0.2, kOutlier = 4;
         std::atomic<double> mean_{0};
         int samples_ = 0;

@@ -24,8 +24,8 @@ public:
 
     bool empty() const { return windows_ == 0; }
 
-    /// Whether a window may be one with those kept: nothing is merged over a place where state
-    /// begins anew.
+    /// Whether a window may become one with those kept: nothing is merged over a place where the
+    /// network starts with a new state.
     bool takes(const EventWindow& event_window, bool new_state_after_gaps) const {
         if (empty()) return true;
         return !event_window.reset_before && !(event_window.gap_before && new_state_after_gaps) &&

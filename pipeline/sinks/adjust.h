@@ -41,8 +41,8 @@ public:
 
 private:
     Range smooth_;
-    /// Of what smooth_ is the mean of: small at first, so that the first frame, of a network that
-    /// has seen little, does not stand for half a second.
+    /// Sum of the weights of the frames that smooth_ is the mean of: small at first, so that the
+    /// first frame, of a network that has seen little, does not stand for half a second.
     double weight_ = 0;
     SensorTime last_{};
     bool begun_ = false;

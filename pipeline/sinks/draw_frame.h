@@ -53,7 +53,7 @@ struct ShownPart {
     double left = 0, top = 0, width = 1, height = 1;
 };
 
-/// That part of an image of the whole sensor, whose pixels it shares: at least one each way.
+/// `part` of an image of the whole sensor, sharing its pixels: at least one each way.
 cv::Mat part_of(const cv::Mat& sensor, const ShownPart& part);
 
 /// Puts the frame's events, of the part it shows, left of `image`, what draw() made of the frame:

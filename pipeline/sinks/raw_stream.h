@@ -67,8 +67,8 @@ struct StreamSettings {
     bool stamp = false;
     /// `repeat` only where frames come at a constant rate, else their numbers say nothing.
     Overload overload = Overload::skip;
-    /// Of a live source: a pipe holds no more than about a frame, so that a slow reader gets new
-    /// ones.
+    /// The source is live: a pipe then holds no more than about a frame, so that a slow reader gets
+    /// new ones.
     bool live = false;
     /// Asked while a named pipe waits for its reader: true gives up. May be empty.
     std::function<bool()> give_up = {};

@@ -36,7 +36,8 @@ std::unique_ptr<ImageTable> open_hdf5_images(const Hdf5File& file, const std::st
 struct Hdf5Size {
     int width = 0, height = 0;
 };
-/// Of an array of one or more images; refuses what no sensor has.
+/// Size of the images in an array of one or more; `rows_at` is the axis of their rows. Refuses what
+/// no sensor has.
 Hdf5Size size_of_images(const Hdf5Data& images, std::size_t rows_at);
 
 }  // namespace eventide

@@ -19,7 +19,7 @@ public:
 
     const std::string& name() const { return file_.path(); }
     const NumpyArray& array() const { return array_; }
-    /// Of all numbers of the array.
+    /// The type that all numbers of the array have.
     const NumpyField& number() const { return array_.fields.front(); }
     /// The shape's first number; 1 for a single number.
     std::uint64_t rows() const { return array_.rows(); }

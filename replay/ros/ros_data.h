@@ -25,7 +25,7 @@ enum class RosKind {
     images    ///< sensor_msgs/Image
 };
 
-/// Of a type's name, with or without ROS 2's "/msg".
+/// The kind of messages of this type, whose name may be with or without ROS 2's "/msg".
 RosKind ros_kind(std::string_view type);
 
 /// What a topic's messages are.
@@ -39,10 +39,10 @@ struct RosImageSize {
     int width = 0, height = 0;  ///< px
 };
 
-/// Of the first event in a message of kind events. Empty where there is none.
+/// Time of the first event in a message of kind events. Empty where there is none.
 std::optional<SensorTime> first_time(RosWire wire, std::span<const std::byte> message);
-/// Of a message of kind images. Empty where it is cut short. One of another size than the events'
-/// is not the event camera's.
+/// Size of the image in a message of kind images. Empty where it is cut short. One of another size
+/// than the events' is not the event camera's.
 std::optional<RosImageSize> image_size(RosWire wire, std::span<const std::byte> message);
 
 /// The messages of one topic with events and one with images, in order.

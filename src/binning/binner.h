@@ -44,7 +44,7 @@ public:
     void restore(const std::vector<std::uint8_t>& ages);
 
 private:
-    /// Of one pixel in the bin at hand.
+    /// Sums over one pixel's events in the bin at hand.
     struct Moments {
         std::uint64_t counts = 0;   ///< low half: events; high half: sum of polarities, signed
         std::uint64_t sum = 0;      ///< of d

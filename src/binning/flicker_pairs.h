@@ -26,8 +26,8 @@ public:
     static constexpr std::size_t kMostHeld = std::size_t{1} << 22;
 
     /// Sensor of width x height px. `longest` between the events of a pair, and so how long events
-    /// are held back: 0 to kLongest; 0: three quarters of a period. After `renumber_at` events the
-    /// numbers that it counts them with begin anew, which makes no difference.
+    /// are held back: 0 to kLongest; 0: three quarters of a period. `renumber_at`: events after
+    /// which their numbers start again, which changes nothing that comes out; for tests.
     FlickerPairs(int width, int height, SensorDuration longest,
                  std::uint32_t renumber_at = std::uint32_t{1} << 31);
 
@@ -38,7 +38,7 @@ public:
     /// Appends all that is held back.
     void flush(std::vector<Event>& events);
 
-    /// Where all before `now` was processed: no event before this time will come out any more.
+    /// Once all events before `now` were processed, none before this time will come out any more.
     SensorTime known_until(SensorTime now) const { return now - delay(); }
     std::size_t held() const { return held_count_; }           ///< events that may come out yet
     std::uint64_t left_out() const { return left_out_; }       ///< events, since construction
@@ -47,7 +47,7 @@ public:
 
     void reset() noexcept;  ///< as constructed
 
-    /// To go on from elsewhere.
+    /// What another one needs to go on from here.
     struct State {
         FlickerPeriod::State period;
         std::vector<Event> held;

@@ -21,15 +21,15 @@ public:
     /// No pixel has had an event yet; time goes on from `now`.
     void forget(SensorTime now) noexcept;
 
-    /// Before the others are asked about an event: time has come to `now`, which may lie before
-    /// that of the last call by up to a second.
+    /// Time has come to `now`: call it before anything is asked about an event. `now` may lie
+    /// before that of the last call by up to a second.
     void advance(SensorTime now) noexcept {
         if (now - swept_ >= kSweep) sweep(now);
     }
 
     void set(const Event& event) noexcept { words_[at(event)] = word(event); }
 
-    /// Of the eight pixels around an event's.
+    /// How many of the eight pixels around an event's fired.
     struct Around {
         int fired = 0;  ///< within `fired_within` before it
         int alike = 0;  ///< with its polarity, within `alike_within` before it

@@ -41,8 +41,8 @@ std::size_t push_in_order(Slicer& slicer, std::vector<Event>& events, Filter& fi
     return before - events.size() - filter.held();
 }
 
-/// The same where the camera's clock may have begun anew among `events`: the slicer must know, even
-/// where none of the events around that stay.
+/// The same where `events` may hold clock resets: the slicer must know of each, even where the
+/// filter leaves out the events around it.
 template <typename Filter>
 std::size_t push_filtered(Slicer& slicer, std::vector<Event>& events, Filter& filter,
                           HostTime arrived = {}) {

@@ -19,7 +19,8 @@ namespace eventide {
 /// known by now: so the windows are the same however the stream is split into calls.
 class SilenceTracker {
 public:
-    /// Of windows so wide; the first `silent_windows` of a silence come one by one.
+    /// `width`: of a window without events. The first `silent_windows` of a silence come one by
+    /// one.
     void set_windows(SensorDuration width, int silent_windows) {
         width_ = width;
         silent_windows_ = silent_windows;
@@ -42,7 +43,7 @@ public:
         newest_ = t;
     }
     SensorTime newest() const { return newest_; }  ///< seen last; SensorTime::min(): nothing yet
-    /// What is seen from now on is told by a clock that began anew.
+    /// Clock reset: what is seen from now on is of the new clock.
     void hear_anew();
 
     /// Where a window ends that would end at `edge`, when no event is known before `quiet_until`.
@@ -51,7 +52,7 @@ public:
     void end_window(bool empty);
     /// Windows begin after `t` from now on, or are of a later clock.
     void forget_pauses_until(SensorTime t);
-    /// The next window is of the clock after this one.
+    /// The windows, too, have come to a clock reset: the next one is of the clock after it.
     void begin_anew();
 
     int empty_windows() const { return empty_windows_; }  ///< in a row, silent_windows at most
@@ -67,7 +68,7 @@ private:
     SensorDuration width_{1};
     int silent_windows_ = 1, empty_windows_ = 0;
     SensorTime newest_ = SensorTime::min();
-    std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;  // that began anew; of windows
+    std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;  // resets seen; of windows
     std::vector<Pause> pauses_;  // that may concern the open window or later ones
 };
 

@@ -23,7 +23,7 @@ struct SlicerCounters {
     std::uint64_t too_many = 0;         ///< left out: more than max_events in one microsecond
     std::uint64_t late = 0;             ///< moved to the open window's first microsecond
     std::uint64_t late_references = 0;  ///< images before the open window: no edge was cut there
-    std::uint64_t time_resets = 0;      ///< time went back: a new stream began
+    std::uint64_t time_resets = 0;      ///< clock resets, each of which began a new stream
 };
 
 /// Give it what the stream says, then take event windows until there is none:
@@ -34,8 +34,9 @@ struct SlicerCounters {
 /// A window is cut at T when the stream is past T. However the stream is split into calls, the
 /// event windows are the same (with the exception that SlicerSettings::silent_windows states).
 ///
-/// Time that goes back (events are in order, so the camera's clock was reset) ends the open window
-/// and begins anew; that event window carries reset_before.
+/// Clock reset: the sensor's clock starts again, which shows in an event's time that steps back, as
+/// events are in order otherwise. It ends the open window, and a new stream begins, whose first
+/// event window carries reset_before.
 class Slicer {
 public:
     /// Sensor of width x height px. Throws Error (usage) for settings out of range.
@@ -44,21 +45,22 @@ public:
     /// Events in the order of the stream; `arrived` of the packet they came in.
     void push(std::span<const Event> events, HostTime arrived = {});
 
-    /// Events of which a filter leaves out some tell the time all the same: call it with all of
-    /// them, in order of time, before push() with what is left, and advance() after it. Windows in
-    /// silence are then the same however the stream is split, too.
+    /// Where a filter leaves out events: tells the times of all of them, in order. Call it before
+    /// push() with those that are left, and advance() after it. So windows in silence, too, are the
+    /// same however the stream is split.
     void hear(std::span<const Event> events);
-    /// Whether the event at t, after one at `before`, is told by a clock that began anew: time went
-    /// back, or farther ahead than limit_leap() says.
+    /// Whether an event at t, the next after one at `before`, shows a clock reset: time went back,
+    /// or farther ahead than limit_leap() allows.
     bool is_new_clock(SensorTime before, SensorTime t) const {
         return t < before || (before != SensorTime::min() && t - before > most_ahead_);
     }
-    /// From now on. Without a limit at first: a recording may be silent for hours.
+    /// From now on an event more than `most` after the one before it is a clock reset. No limit at
+    /// first: a recording may be silent for hours.
     void limit_leap(SensorDuration most) { most_ahead_ = most; }
-    /// Whether an event of this time, after those heard, begins a new stream.
+    /// Whether an event at t, the next after those given to hear(), shows a clock reset.
     bool begins_anew(SensorTime t) const { return anew_ || is_new_clock(heard_event_, t); }
-    /// The camera's clock was reset: the open window ends, and a new stream begins at `first`. As
-    /// push() does by itself, for who knows of events that a filter leaves out.
+    /// Clock reset: the open window ends, and a new stream begins with an event at `first`. push()
+    /// does this by itself; call it where the event that shows it may be left out by a filter.
     void begin_anew(SensorTime first);
 
     /// The time of a reference image; before or after the events around it. Other rules ignore it.
@@ -67,18 +69,18 @@ public:
     /// The stream's clock says `now`: no event before it will come any more.
     void advance(SensorTime now, HostTime arrived = {});
 
-    /// A source that stood still (a recording somewhere that was paused) never catches up with what
-    /// advance() promised meanwhile by the host's clock. Tell what it says before its events are
-    /// pushed: where it stays more than kMostBehind behind for as long on the host's clock, the
-    /// next event begins a new stream, as where time goes back.
+    /// For live sources: tells the time of the newest data that came, before their events are
+    /// pushed. Where advance() went on by the host's clock while the source stood still (a
+    /// recording somewhere that was paused), the source's times never catch up: once they have been
+    /// more than kMostBehind behind for as long on the host's clock, the next event is a clock
+    /// reset.
     static constexpr SensorDuration kMostBehind{1'000'000};
     void look_behind(SensorTime told, HostTime arrived);
 
-    /// A place in the stream: how often its clock had begun anew, and until when all was known
-    /// then.
+    /// A place in the stream.
     struct Position {
-        std::uint64_t clocks = 0;
-        std::optional<SensorTime> until{};  ///< empty: nothing was
+        std::uint64_t clocks = 0;           ///< clock resets before it
+        std::optional<SensorTime> until{};  ///< every event up to then was known; empty: none was
         friend bool operator==(const Position&, const Position&) = default;
     };
     /// Bytes were lost here. The next event window carries gap_before.
@@ -98,40 +100,43 @@ public:
     /// The next complete event window, borrowed until the next call of anything here.
     bool next(EventWindow& event_window);
 
-    /// Of all that was said so far.
+    /// Where the stream stands: the latest time that push() and advance() told so far (less 1 us,
+    /// as more events of that microsecond may come), and the clock resets until then.
     Position heard() const;
-    /// The end of the event window given last. It could have been cut before what came when the
-    /// stream stood at `position`.
+    /// Whether the event window given last could already be cut when the stream stood at
+    /// `position`, however late it was.
     bool ended_before(const Position& position) const;
 
     bool has_begun() const { return begin_.has_value(); }
-    bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
-    /// The last time that was asked for, of the clock at hand; empty: all, or not known yet.
+    bool is_past_end() const { return past_end_; }  ///< end() was reached
+    /// SlicerSettings::end or duration as a time of the present clock: later events are left out.
+    /// Empty: none are, or not known yet.
     std::optional<SensorTime> end() const { return end_; }
-    /// Since SlicerSettings::begin, a time of the clock before.
+    /// Whether there was a clock reset after SlicerSettings::begin: begin and end of the settings
+    /// are then times of a clock that is gone.
     bool began_anew() const { return !first_stream_; }
     const SlicerCounters& counters() const { return counters_; }
 
     /// As constructed; counters stay.
     void reset();
 
-    /// What is open, to go on from elsewhere. Of a stream whose clock was not reset.
+    /// The open window, from which another slicer can go on. Only of a stream without clock resets.
     struct State {
         SensorTime begin{}, origin{};  ///< of the open window; of the edges of rule duration
         SensorTime newest{}, newest_event{};
-        SensorTime heard{};  ///< until when hear() was told, which filters may hold back
+        SensorTime heard{};  ///< newest time told, also by events that a filter holds back
         std::uint64_t same_time = 0;
         int silent = 0;
         bool gap = false;
         std::vector<Event> events;  ///< of the open window, in order
         friend bool operator==(const State&, const State&) = default;
     };
-    /// Once next() gave no more event window. Empty before anything came, after a reset of the
-    /// clock, and with rule reference, which remembers images.
+    /// Call it once next() gives no more event window. Empty before anything came, after a clock
+    /// reset, and with rule reference, which remembers images.
     std::optional<State> state() const;
-    /// Of a slicer of the same settings that has seen nothing; `begin` and `end` of the settings
-    /// hold for what comes. Throws Error (input) for a state that holds no truth, and is then as
-    /// it was.
+    /// Goes on from `state`, which is of a slicer with the same settings; this one has seen
+    /// nothing. `begin` and `end` of the settings hold for what comes. Throws Error (input) for a
+    /// state that cannot be true, and is then as it was.
     void restore(const State& state);
 
 private:
@@ -160,7 +165,7 @@ private:
     PendingEvents pending_;
     TileActivity activity_;  // rule content: of the open window
     SilenceTracker silence_;
-    /// Which clock tells an image's time: as many had begun anew, of clocks_heard_.
+    /// Which clock tells an image's time: the value of clocks_heard_ when it came.
     struct Reference {
         std::uint64_t clock;
         SensorTime t;
@@ -172,7 +177,7 @@ private:
     SensorTime origin_{};                // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
     std::uint64_t same_time_ = 0;  // events at newest_event_
-    // Clocks that began anew: in what was pushed, in the windows given.
+    // Clock resets: in what was pushed, in the windows given.
     std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;
     bool hears_apart_ = false;                    // hear() tells the time, not push()
     SensorTime heard_event_ = SensorTime::min();  // the last by hear()

@@ -35,14 +35,14 @@ std::span<const T> take_until(std::span<const T>& items, SensorTime last) {
     return taken;
 }
 
-/// Of a sensor's clock that began anew with an event at `first`, after one at `last`: what has no
-/// place among the events goes with the one that its time is nearer to.
+/// Whether data at `t` come after a clock reset, which lies between an event at `last` and the next
+/// one at `first`: they have no place among the events, so they go with the nearer of the two.
 inline bool is_of_new_clock(SensorTime t, SensorTime last, SensorTime first) {
     return std::chrono::abs(t - first) < std::chrono::abs(t - last);
 }
 
-/// What came before the sensor's clock began anew, where it did: an event is earlier than the one
-/// before it. Taken off `rest`; other data as is_of_new_clock() says.
+/// Takes off `rest` what comes before the first clock reset (an event is earlier than the one
+/// before it), or all where there is none. Images, samples and triggers as is_of_new_clock() says.
 inline BatchPart take_clock(BatchPart& rest) {
     const auto back = std::ranges::adjacent_find(
         rest.events, [](const Event& a, const Event& b) { return b.t < a.t; });
@@ -60,7 +60,7 @@ inline BatchPart take_clock(BatchPart& rest) {
     return {events, take(rest.images), take(rest.imu), take(rest.triggers)};
 }
 
-/// take(BatchPart) for all of the batch, kLongestPart at a time, and never of two clocks. Events
+/// take(BatchPart) for all of the batch, kLongestPart at a time, never across a clock reset. Events
 /// alone are one part: nothing else could come too late.
 template <typename Take>
 void in_parts(const Batch& batch, Take&& take) {

@@ -13,13 +13,13 @@
 namespace eventide {
 
 struct EventStreamHeader {
-    /// Of ATIS streams the change events; their exposure measurements are passed over.
+    /// Of ATIS streams only the change events are read; exposure measurements are passed over.
     enum class Kind { dvs, atis };
     StreamHeader stream;
     Kind kind = Kind::dvs;
 };
 
-/// By the first words, "Event Stream".
+/// Whether the bytes begin with "Event Stream".
 bool is_event_stream(std::span<const std::byte> first_bytes);
 
 /// Throws Error (input) for other versions, for kinds that hold no change events, and for a header

@@ -29,7 +29,7 @@ public:
     static constexpr std::int64_t kLongestFirstPause = 60'000'000;  // us
     static constexpr std::int64_t kFarthest = kFarthestUs;
 
-    /// px
+    /// For a sensor of `width` x `height` px.
     EventValidator(std::uint64_t width, std::uint64_t height,
                    LeapEnds leap_ends = LeapEnds::with_next_event)
         : width_(width), height_(height), leap_ends_(leap_ends) {}
@@ -58,7 +58,7 @@ public:
         }
     }
 
-    /// Of packets: what comes next is in another.
+    /// For LeapEnds::with_next_packet: the events that come next are in another packet.
     void end_packet() { in_packet_of_leap_ = false; }
 
     /// The stream ended: nothing can contradict the events held back.
@@ -81,12 +81,13 @@ public:
     std::uint64_t height() const { return height_; }
     std::optional<std::int64_t> newest_us() const { return newest_; }  ///< of the events taken
 
-    /// For a loop of its own over many events: true when this time needs no more than a look.
+    /// For callers that take many events in a loop of their own: whether one at this time, inside
+    /// the sensor, may be taken without add().
     bool is_plain(std::int64_t t_us) const {
         return newest_ && held_.empty() && !first_ && t_us >= *newest_ &&
                t_us - *newest_ <= kLongestStep;
     }
-    void pass(std::int64_t t_us) { newest_ = t_us; }  ///< after is_plain()
+    void pass(std::int64_t t_us) { newest_ = t_us; }  ///< the newest so taken
 
 private:
     /// us from one time to a later one; times as far apart as 64 bits allow.

@@ -85,7 +85,8 @@ private:
     };
 
     std::size_t n_held() const { return held_.size() - head_ + late_.size(); }
-    /// Of one time, those held in order came first: a late one came after a later time.
+    /// Whether the earliest event held is one that came late. Of one time, the event that came in
+    /// order was first: a late one came after a later time.
     bool late_is_first() const {
         return !late_.empty() && (head_ == held_.size() || late_.front().event.t < held_[head_].t);
     }

@@ -10,9 +10,10 @@
 
 namespace eventide {
 
-/// Of events, whose leaps EventValidator judges, and of images, IMU samples and triggers, whose
-/// order to the events nobody knows: their leap is believed when the next packet of them does not
-/// lie before it. One flipped bit would otherwise be hours of silence at the end of a recording.
+/// Times of events are taken as they are: EventValidator has judged their leaps. The order of
+/// images, IMU samples and triggers to the events is not known, so a leap of theirs is believed
+/// only when the next packet of them does not lie before it. One flipped bit would otherwise be
+/// hours of silence at the end of a recording.
 class ToldTime {
 public:
     std::optional<std::int64_t> newest_us() const { return newest_; }
@@ -22,7 +23,7 @@ public:
         newest_ = t_us;
         if (doubted_ && t_us < *doubted_ - EventValidator::kLongestStep) doubted_.reset();
     }
-    /// Of other data, until end_packet().
+    /// The time of an image, sample or trigger; it counts from end_packet() on.
     void tell(std::int64_t t_us) { told_ = std::max(told_.value_or(t_us), t_us); }
 
     void end_packet() {

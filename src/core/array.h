@@ -1,5 +1,5 @@
-// Owning, row-major blocks of numbers, 64-byte aligned; the last index is contiguous. The public
-// face is Array2's home.
+// Owning, row-major blocks of numbers, 64-byte aligned; the last index is contiguous. Array2 is in
+// the public header.
 #pragma once
 
 #include <eventide/array.h>

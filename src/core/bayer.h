@@ -14,7 +14,7 @@
 
 namespace eventide {
 
-/// Of a square of 2x2 pixels that begins at even x and y.
+/// A place in a square of 2x2 pixels that begins at even x and y.
 struct BayerSite {
     int x = 0, y = 0;  ///< 0 or 1 each
 };
@@ -90,7 +90,8 @@ ColourFilter filter_with(const Channel& channel) {
     return ColourFilter::none;
 }
 
-/// That of an image whose top left corner is the sensor's pixel (x0, y0). The filter is not none.
+/// The filter of an image whose top left corner is the sensor's pixel (x0, y0). The filter is not
+/// none.
 inline ColourFilter filter_at(ColourFilter filter, int x0, int y0) {
     return filter_with([&](int x, int y) { return channel_at(filter, x0 + x, y0 + y); });
 }

@@ -1,4 +1,4 @@
-// Part of the public face, which is its home.
+// Forwards to the public header.
 #pragma once
 
 #include <eventide/event.h>

@@ -70,9 +70,11 @@ struct LatentCodes {
 /// What the encoder knows after one event window.
 struct LatentMap : WindowStamp, LatentCodes {
     Array2<float> events_per_pixel;  ///< [y][x]; empty where not asked for
-    /// Of the mirrored views of an ensemble but the first (EngineOptions::self_ensemble).
+    /// Codes of an ensemble's mirrored views (EngineOptions::self_ensemble); those of the first
+    /// view are the map's own.
     std::vector<LatentCodes> mirrored;
-    /// Of blue, green and red pixels alone, half as wide and high; empty where not asked for.
+    /// Codes of the blue, the green and the red pixels alone, half as wide and high; empty where
+    /// not asked for.
     std::vector<LatentCodes> channels;
 };
 

@@ -14,7 +14,7 @@ struct RawPacket {
     HostTime arrived{};
     std::uint64_t sequence = 0;  ///< counts packets read, also lost ones: a jump is a loss
     bool gap_before = false;     ///< bytes were lost between the packet before and this one
-    /// With gap_before: the device was opened again, so that its clock may count from elsewhere.
+    /// Beside gap_before: the device was opened again, so that its clock may start at another time.
     bool reopened = false;
 };
 

@@ -98,7 +98,7 @@ public:
     /// The op of the next record, which it passes over unread; -1 at the end.
     int skip();
 
-    /// Of a record's field of 4 bytes.
+    /// The number in a record's field of 4 bytes.
     std::uint32_t number(const BagRecord& record, std::string_view field) const;
     [[noreturn]] void refuse(const std::string& what,
                              DamageReason reason = DamageReason::bad_record) const;

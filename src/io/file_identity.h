@@ -17,7 +17,7 @@ std::filesystem::path resolved(const std::filesystem::path& path);
 class FileIdentity {
 public:
     static FileIdentity of(const std::filesystem::path& path);
-    /// Of an open file, such as standard output.
+    /// The identity of an open file, such as standard output.
     static FileIdentity of_descriptor(int descriptor);
 
     /// Never for terminals, sockets and devices such as /dev/null: any number of users may share

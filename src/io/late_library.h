@@ -7,8 +7,8 @@ namespace eventide {
 /// A library that stays loaded. Thread: any.
 class LateLibrary {
 public:
-    /// By the name that whoever links it would load it by. Throws Error (failed) naming what needs
-    /// it, what the system says, and Debian's package.
+    /// Loads it by `soname`, the name by which a program linked with it would. Throws Error
+    /// (failed) naming what needs it, what the system says, and Debian's package.
     LateLibrary(const char* soname, const char* needed_for, const char* package);
 
     /// Throws Error (failed) where it has none of this (mangled) name.

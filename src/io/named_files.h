@@ -34,7 +34,7 @@ public:
     /// folder cannot be written to (kind failed).
     void writes_when_done(const std::string& option, const std::filesystem::path& path,
                           const std::string& said = {});
-    /// Of the outputs of writes(), those that are named pipes.
+    /// Those outputs of writes() that are named pipes.
     const std::vector<std::filesystem::path>& pipes() const { return pipes_; }
     /// A folder that a command makes where there is none, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
@@ -45,8 +45,8 @@ public:
     /// A folder that is the output's own, with everything in it.
     void writes_all(const std::string& option, const std::filesystem::path& folder);
 
-    /// From a configuration file, the environment or `--out=~/x`, a shell has not replaced a ~ at
-    /// the beginning: the output would land in a folder of that name. Throws Error (usage);
+    /// Throws Error (usage) for a path that begins with ~: no shell replaces it in a configuration
+    /// file, the environment or `--out=~/x`, and the output would land in a folder of that name.
     /// `said` is how the user wrote it.
     static void refuse_home_sign(const std::string& said, const std::filesystem::path& path);
 

@@ -26,12 +26,12 @@ struct NumpyArray {
     bool is_cut = false;  ///< the shape is of the whole rows that there are, and was larger
 
     bool is_of_records() const { return !fields.empty() && !fields.front().name.empty(); }
-    /// Of numbers that are read, row-major: the last index is contiguous.
+    /// Whether it is of numbers (of a kind that is read), row-major: the last index is contiguous.
     bool is_of_numbers_in_rows() const;
     std::uint64_t rows() const { return shape.empty() ? 1 : shape.front(); }
     std::uint64_t items() const;  ///< numbers, or records: the product of `shape`
     std::string shape_text() const;
-    /// Of the name; null where there is none.
+    /// The field of this name; null where there is none.
     const NumpyField* field(const std::string& name) const;
 };
 

@@ -31,7 +31,7 @@ enum class PipeReader {
     left         ///< closed it
 };
 
-/// Behind the pipe's name and a colon: "nobody read it", "its reader went away".
+/// What to say behind a pipe's name and a colon: "nobody read it", "its reader went away".
 std::string_view text_of(PipeReader reader);
 
 struct OutputOptions {

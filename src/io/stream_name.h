@@ -5,12 +5,12 @@
 
 namespace eventide {
 
-/// Of what is read: "standard input", or the path as it is.
+/// The name of an input in messages: "standard input" for "-", else the path as it is.
 inline std::string input_name(const std::string& path) {
     return path == "-" ? "standard input" : path;
 }
 
-/// Of what is written: "standard output", or the path as it is.
+/// The name of an output in messages: "standard output" for "-", else the path as it is.
 inline std::string output_name(const std::string& path) {
     return path == "-" ? "standard output" : path;
 }

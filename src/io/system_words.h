@@ -6,9 +6,10 @@
 
 namespace eventide {
 
-/// For an errno value: the system's own words, and what to do where those alone do not help.
+/// What to say of an errno value: the system's own words, and what to do where those do not help.
 std::string system_words(int error);
-/// For what the standard library throws: a thread that cannot be started says little by itself.
+/// The same of what the standard library throws: a thread that cannot be started says little by
+/// itself.
 std::string system_words(const std::system_error& error);
 
 /// Whether this process cannot open so many files more: for libraries that do not say why they

@@ -53,10 +53,10 @@ constexpr int bf16_lanes(int outputs) {
     return outputs <= kBf16Lanes / 2 ? kBf16Lanes / 2 : kBf16Lanes;
 }
 
-/// By AMX where the processor has it, else by AVX512_BF16; null where it has neither, or neither
-/// may be used.
+/// Kernels by AMX where the processor has it, else by AVX512_BF16; null where it has neither, or
+/// neither may be used.
 const Bf16Kernels* bf16_kernels(Instructions most = Instructions::best);
-/// By AMX; null where it is not there, the system does not allow it, or it may not be used.
+/// Kernels by AMX; null where it is not there, the system does not allow it, or it may not be used.
 const Bf16Kernels* amx_kernels(Instructions most = Instructions::best);
 
 /// One number, rounded to nearest even; finite in, finite out except where it overflows.

@@ -13,7 +13,7 @@ namespace eventide::amx {
 
 constexpr int kRun = kTileRows, kBoth = 2 * kRun;  // pixels of a tile, and that go through together
 
-/// Of two vectors, one behind the other: the even lanes, the odd ones.
+/// Numbers of the even lanes, and of the odd ones, of two vectors one behind the other.
 EVENTIDE_AMX_INLINE __m512i evens() {
     return _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
@@ -83,7 +83,7 @@ private:
 struct PairOfSums {
     __m512 first, second;
 };
-/// Of twice as many pixels, in as many lanes.
+/// The sums of both groups of pixels, in as many lanes as one group had.
 EVENTIDE_AMX_INLINE PairOfSums joined(const PairOfSums& a, const PairOfSums& b) {
     return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
 }
@@ -111,7 +111,8 @@ EVENTIDE_AMX_INLINE void put_outputs(const HiddenRows& r, const PairOfSums& sums
                           _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
 }
 
-/// Of `count` pixels from `first` on: eight(p) gives the sums of eight of them, from the p-th on.
+/// put_outputs() for `count` pixels from `first` on; eight(p) gives the sums of eight of them, from
+/// the p-th on.
 template <typename Eight>
 EVENTIDE_AMX_INLINE void put_by_eights(const HiddenRows& r, const Eight& eight, int first,
                                        int count) {

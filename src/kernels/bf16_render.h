@@ -12,7 +12,7 @@ bool hidden_rows(const HiddenRows& rows);
 
 namespace amx {
 bool hidden_rows(const HiddenRows& rows);
-/// Of layers of up to 16 numbers, by AMX or by vectors.
+/// hidden_rows() for 9 to 16 outputs, by AMX or by vectors; false where it does not do such layers.
 bool narrow_rows(const HiddenRows& rows, bool by_tiles);
 }  // namespace amx
 

@@ -26,7 +26,7 @@ struct VectorKernels {
     const char* name;  ///< of the instruction set
     int lanes;         ///< float32 numbers per vector
     bool by_quads;     ///< whether dot_area does layers of 8 and 16 outputs as quad_dots.h says
-    /// With fused multiply-adds, so that AVX2 and AVX-512 agree.
+    /// The sums of DotArea, by fused multiply-adds so that AVX2 and AVX-512 agree.
     void (*dot_area)(const DotArea&);
     void (*winograd_input)(const WinogradInput&);
     void (*winograd_output)(const WinogradOutput&);

@@ -39,7 +39,7 @@ struct AffineFit {
     double gain = 1, offset = 0;
 };
 
-/// That of the first image to the second.
+/// The gain and offset that bring the first image nearest to the second.
 AffineFit affine_fit(const Spread& spread);
 
 /// The gain and offset that bring `image` nearest to `reference` in the mean square. A constant

@@ -24,7 +24,7 @@ public:
     virtual void reset() noexcept = 0;
     /// The hidden maps by name, [height, width, channels].
     virtual Tensors state() const = 0;
-    /// Of the names and shapes state() has.
+    /// `state` has the names and shapes that state() gives.
     virtual void restore(const Tensors& state) = 0;
 };
 

@@ -34,8 +34,8 @@ void save_model(const std::filesystem::path& path, const Model& model, bool over
 /// belongs to. 16 hexadecimal digits.
 std::string encoder_identity(const Model& model);
 
-/// Of everything that says how the network computes, and its weights: what was measured of a model
-/// holds for this one. 16 hexadecimal digits.
+/// The same for the whole network: of all that says how it computes, and of its weights. What was
+/// measured of a model holds for every one of this identity. 16 hexadecimal digits.
 std::string model_identity(const Model& model);
 
 }  // namespace eventide

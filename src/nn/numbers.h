@@ -25,7 +25,7 @@ public:
     Numbers() = default;
     explicit Numbers(const Backend& backend) : f32_(backend.f32), bf16_(backend.bf16) {}
 
-    /// For all but products.
+    /// Kernels for all but products.
     const VectorKernels& kernels() const { return *f32_; }
     /// Null where they are float32.
     const Bf16Kernels* bf16() const { return bf16_; }

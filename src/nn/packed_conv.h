@@ -37,7 +37,8 @@ public:
     /// Scratch numbers run() needs for height x width outputs or fewer.
     std::size_t scratch_size(int height, int width) const;
     void run(const ConvArea& area, float* scratch) const noexcept;
-    /// Of one map of float32 numbers, which are converted on the way where layers read bf16.
+    /// The same for one map of float32 numbers, which are converted on the way where layers read
+    /// bf16.
     void run(const ConvCall& call, float* scratch) const noexcept;
 
 private:

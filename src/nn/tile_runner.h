@@ -40,8 +40,8 @@ public:
         run(tiles, {0, active_.size()}, body);
     }
 
-    /// Of work in two halves: first() of the tiles of one group of `group` consecutive ones, then
-    /// second() of those of the group before. At most two groups are between their halves.
+    /// For work in two halves, on groups of `group` consecutive tiles: first() for a group's tiles,
+    /// then second() for those of the group before. At most two groups are between their halves.
     ///
     ///     first     0    1         2         3               group numbers, in order of time
     ///     second              0         1         2    3
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    /// Of active_.
+    /// Places in active_, `end` excluded.
     struct Range {
         std::size_t begin = 0, end = 0;
     };

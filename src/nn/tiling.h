@@ -75,8 +75,8 @@ inline std::vector<Tile> tiles_of(int height, int width, int side) {
     return tiles;
 }
 
-/// Of each row of each tile the groups of `size` pixels that have a 1 become all 1; the last of a
-/// row may lack pixels.
+/// Cuts each row of each tile into groups of `size` pixels, the last of which may have fewer:
+/// groups that have a 1 become all 1.
 ///
 ///     size 4, a tile of 7     0 0 1 0 | 0 0 0     becomes     1 1 1 1 | 0 0 0
 inline void fill_groups(Mask& mask, const std::vector<Tile>& tiles, int size) {
@@ -90,9 +90,9 @@ inline void fill_groups(Mask& mask, const std::vector<Tile>& tiles, int size) {
             }
 }
 
-/// From row y of a tile to the row that is fetched meanwhile, in numbers, rows `pitch` apart; 0
-/// where it is past the tile's last. Maps are larger than a core's cache, and pieces of rows too
-/// short for its own foresight.
+/// How many numbers lie between row y of a tile and the row to prefetch meanwhile, with rows
+/// `pitch` apart; 0 where that is past the tile's last. Maps are larger than a core's cache, and
+/// pieces of rows too short for its own foresight.
 inline std::ptrdiff_t to_row_ahead(const Tile& tile, int y, std::ptrdiff_t pitch) {
     constexpr int kRows = 2;
     return y + kRows < tile.y1 ? kRows * pitch : 0;
@@ -110,7 +110,7 @@ struct Extent {
     friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// Of the tiles grown by n within their map.
+/// Sizes of the tiles, each grown by n within its map.
 inline std::vector<Extent> extents_of(const std::vector<Tile>& tiles, int n, int map_height,
                                       int map_width) {
     std::vector<Extent> extents;

@@ -64,7 +64,7 @@ Setting whole_setting(std::string key, int& value, std::string value_name, std::
 Setting number_setting(std::string key, double& value, std::string value_name, std::string help,
                        double least, double most);
 
-/// Of a file alone: what takes a value in a way of its own.
+/// A setting of configuration files alone, which takes its value in a way of its own.
 Setting file_setting(std::string key, std::function<void(const SettingValue&)> set);
 
 /// A value with its own way of being written. `parse` throws Error (usage).

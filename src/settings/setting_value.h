@@ -32,7 +32,7 @@ struct SettingValue {
     SettingValue(std::string word) : text{std::move(word)} {}
     SettingValue(const std::vector<std::string>& words);
 
-    /// Of a list all, else the one.
+    /// All texts of a list; else the one text.
     std::vector<std::string> texts() const;
     /// Words may be of any kind; what a file holds is of the kind that is written there.
     bool may_be(ValueKind wanted) const { return place.empty() || kind == wanted; }

@@ -7,8 +7,8 @@
 
 namespace eventide {
 
-/// From `low` to `high`; what is drawn between them (evenly, or evenly in the logarithm) is said
-/// where the range is used.
+/// Bounds of a random number, `low` to `high`. Whether it is drawn evenly between them, or evenly
+/// in the logarithm, is said where the range is used.
 struct Range {
     double low = 0, high = 0;
 };

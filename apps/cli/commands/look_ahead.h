@@ -11,7 +11,7 @@
 
 namespace eventide::app {
 
-/// Of a recording, as it was asked for and as times of its clock.
+/// The part asked of a recording: as the user said it, and as times of its clock.
 struct AskedPart {
     std::string source;
     OpenOptions options;

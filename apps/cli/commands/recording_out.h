@@ -15,7 +15,8 @@ namespace eventide::app {
 /// "folder/", or what is a folder already.
 bool names_folder(const std::string& path);
 
-/// For a recording that was stopped before its end and would take the place of a whole one.
+/// What to throw where a recording was stopped before its end, and would have replaced an earlier
+/// file.
 Error kept_earlier_file(const std::string& path);
 
 class RecordingOut final : public ConvertTarget {

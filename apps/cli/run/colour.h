@@ -18,8 +18,9 @@
 
 namespace eventide::app {
 
-/// Of the first image that tells it, as long as that comes with the first of the recording, in a
-/// format in which each does (AEDAT 3, bags); none, too, of what can be read but once.
+/// The colour filter that the first images of a recording tell, in a format in which each image
+/// does (AEDAT 3, bags); reads as far as that. None also where they tell none, where there are none
+/// in the first 256 MiB, and of what can be read but once.
 ColourFilter filter_of_images(const std::string& source, std::string_view format,
                               const OpenOptions& options);
 

@@ -31,8 +31,8 @@ std::string lost_datagrams(std::uint64_t lost);
 /// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.
 class EventsOut final : public EventFilter, public DataObserver {
 public:
-    /// The first or last time that is written; empty: all, or not known yet. Of the clock at hand,
-    /// which may begin anew; and how long a stream is to last is known with its first event.
+    /// The first or last time that is written; empty: all, or not known yet. In the present clock,
+    /// which may be reset; and how long a stream is to last is known with its first event.
     using Limit = std::function<std::optional<SensorTime>()>;
     /// `filter` may be null; it is borrowed. Events outside of [from, to] are not written.
     /// `colours` as of WrittenData.

@@ -30,7 +30,8 @@ public:
     /// black where it does not cover the sensor (CV_8UC1); leaves `shown` empty where there is
     /// none.
     void draw(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
-    /// To be looked at beside the frame: also where it is as near as half the time between images;
+    /// The same for looking at beside the frame: also where it is as near as half the time between
+    /// images;
     /// CV_8UC3 where it has colours that are asked for.
     void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, Shows shows,
                       cv::Mat& shown) const;

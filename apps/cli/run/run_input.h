@@ -36,19 +36,19 @@ public:
     RealTimePlayback* paced() const { return opened_.paced; }        ///< null: it keeps no pace
     Source& source() { return *opened_.source; }
 
-    /// Of a recording: that it has what is asked of it, and is what flags of input are for.
+    /// Checks that a recording has what is asked of it, and that the flags of input concern it.
     void check(const FlagKeys& flags, const SlicerSettings& slicer) const;
-    /// Of a recording: goes to where the asked span begins.
+    /// Goes to where the span asked of a recording begins; does nothing with a live source.
     void go_to_begin();
     /// What the pipeline reads. `came`: the source, or what writes it down.
     Source& behind_filters(Source& came);
 
-    /// The networks' memory that is to go on, once; none: they begin anew.
+    /// The networks' state to go on from, once; none: they start with a new one.
     std::optional<TensorFile> take_state() { return std::exchange(state_, std::nullopt); }
-    /// None: the stream begins anew.
+    /// The stream's state to go on from; none: a new stream begins.
     const std::optional<StreamState>& resumed() const { return resumed_; }
 
-    /// Of a recording, from where it began; 0: not known.
+    /// Bytes of a recording, from where reading began; 0: not known.
     std::uint64_t bytes_to_read() const { return bytes_to_read_; }
     /// Adds a camera's counters, and as events read what the filters left out. Thread: any.
     void count(Snapshot& now) const;

@@ -30,14 +30,16 @@ Span span_of(const RunSettings& settings, bool live);
 /// no use for.
 Span resumed_span(const RunSettings& settings, Span span, SensorTime t);
 
-/// Of --states-at, with --states-out. Throws Error (usage) where they do not ascend, or one of the
-/// two is missing.
+/// The times of --states-at, which goes with --states-out. Throws Error (usage) where they do not
+/// ascend, or one of the two is missing.
 std::vector<SensorTime> state_times_of(const RunSettings& settings);
 
-/// Of a recording that can be asked for it; reads its beginning.
+/// Time of the first event; reads the recording's beginning. Empty for live sources, simulations
+/// and what can be read but once.
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live);
 
-/// Of a recording: 0 is as fast as possible. Throws Error (usage) for --realtime without a pace.
+/// The pace of a recording: 0 is as fast as possible. Throws Error (usage) for --realtime without a
+/// pace.
 double speed_of(const RunSettings& settings);
 
 /// The bound of a live source's latency; empty where there is none. Throws Error (usage) for a
@@ -50,8 +52,8 @@ SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, 
 /// Frames per second of the video; none: one for each event window.
 FrameRate video_rate_of(const RunSettings& settings, const SlicerSettings& slicer);
 
-/// Of sensor time: --slow 10 asks for ten times the frames of the video's rate. Throws Error
-/// (usage) for more than sensor time has microseconds.
+/// Frames per second of sensor time: --slow 10 asks for ten times the frames of the video's rate.
+/// Throws Error (usage) for more than sensor time has microseconds.
 FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer);
 
 /// Frames per second of the video, as far as it can be said before the run; `rate` is of sensor

@@ -11,15 +11,16 @@
 
 namespace eventide::app {
 
-/// Of frames as they are rendered, which the contact sheet shows. `sensor` in px.
+/// The part of the sensor that frames show as they are rendered, for the contact sheet. `sensor` in
+/// px.
 ShownPart rendered_part(const RunSettings& settings, const Size& sensor,
                         const std::optional<UndistortionPlan>& undistortion);
 
-/// Of frames that are cropped and flipped, as all other sinks get them, beside events that are only
-/// flipped.
+/// The part that frames show once cropped and flipped, as all other sinks get them, beside events
+/// that are only flipped.
 ShownPart shown_part(const RunSettings& settings, const Size& sensor);
 
-/// Of frames that are cropped and flipped.
+/// The geometry of frames once cropped and flipped.
 ImageGeometry image_geometry(const RunSettings& settings, const Size& sensor);
 
 }  // namespace eventide::app

@@ -8,8 +8,8 @@
 
 namespace eventide::app {
 
-/// find_model() for naming files, before anything is opened: empty where there is none, which is
-/// said in its turn.
+/// The file that a model's name stands for, to compare it with other files before anything is
+/// opened. Empty where find_model() finds none: opening the model says so later.
 std::filesystem::path found_model(const std::string& name);
 
 }  // namespace eventide::app

@@ -32,7 +32,7 @@ class TimePointReader {
 public:
     TimePointReader(std::string path, OpenOptions options)
         : path_{std::move(path)}, options_{std::move(options)} {}
-    /// For what begins at a time that is known.
+    /// For a recording whose beginning is known: nothing is read.
     explicit TimePointReader(SensorTime first) : first_{first} {}
 
     /// Reads the beginning of the recording, through an opening of its own, for the first relative

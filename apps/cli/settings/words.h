@@ -18,7 +18,7 @@
 
 namespace eventide::app {
 
-/// Of the network.
+/// Threads that the network may use.
 constexpr int kMaxThreads = 1024;
 
 inline const std::vector<Word<Engine>> kEngineWords{{Engine::plain, "plain"},

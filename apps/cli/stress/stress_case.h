@@ -78,7 +78,7 @@ struct Result {
     }
 };
 
-/// Of two runs of one case: the first that failed, else that of the larger error.
+/// The worse of two runs of one case: the first that failed, else that of the larger error.
 const Result& worse(const Result& a, const Result& b);
 
 struct Case {
@@ -106,7 +106,7 @@ std::vector<Case> window_cases();
 std::vector<Case> size_cases();
 std::vector<Case> number_cases();
 std::vector<Case> agreement_cases();
-/// Of what stays open; the model does not matter.
+/// Cases of what may stay open: recordings, outputs, pipelines. The model does not matter.
 std::vector<Case> resource_cases();
 
 /// All of them, in the order of the table.

@@ -27,7 +27,7 @@ struct RenderWeights {
     bool squares = false;  ///< the second output becomes sigma^2 + mu^2
 };
 
-/// Of the same shapes.
+/// Gradients by the weights, in the same shapes.
 template <int H, typename W>
 struct RenderGradients {
     std::array<W, 3 * H> offset{};

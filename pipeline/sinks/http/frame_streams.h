@@ -21,12 +21,12 @@ struct MotionJpeg {
 Show show_named(const std::string& word);
 double rate_named(const std::string& word);  ///< 0.1 to 1000
 
-/// For the page: ShownFrame::message() of each, at 60 frames per second at most. `place` is kept
+/// Sends the live page ShownFrame::message() of each frame, at most 60 per second. `place` is kept
 /// until the viewer is gone.
 void send_frames(NewestFrame& newest, std::shared_ptr<const void> place,
                  httplib::Response& response);
 
-/// For programs: multipart/x-mixed-replace, with the sensor's time in X-Timestamp. The last frame
+/// Sends programs multipart/x-mixed-replace, with the sensor's time in X-Timestamp. The last frame
 /// comes again each second while there is no new one, because players give up on silence.
 void send_motion_jpeg(NewestFrame& newest, const MotionJpeg& wanted,
                       std::shared_ptr<const void> place, httplib::Response& response);

@@ -16,8 +16,8 @@ namespace eventide {
 
 class HttpServer final : private httplib::Server {
 public:
-    /// Of more than this many at once the one that has longest not sent its request gives way;
-    /// where all have, the new one is told 503 and closed.
+    /// Where one more connects, the one that has waited longest without sending its request is
+    /// closed; where all have sent theirs, the new one is told 503 and closed.
     static constexpr std::size_t kMaxConnections = 64;
 
     /// Called for each request, on its connection's thread; also at the same time. `head` sees all,

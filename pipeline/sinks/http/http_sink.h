@@ -40,10 +40,10 @@ struct HttpSettings {
 /// their frames come late or are skipped.
 class HttpSink : public Sink {
 public:
-    /// At once; more are told 503. Of images, and as many again of statistics.
+    /// Viewers of images at once, and as many again of statistics; more are told 503.
     static constexpr int kMaxViewers = 16;
 
-    /// With the port that was given where 0 was asked for.
+    /// Where it listens: where port 0 was asked for, with the port that the system gave.
     virtual const HttpAddress& address() const = 0;
     virtual std::size_t connections() const = 0;  ///< open now
     virtual std::uint64_t copied() const = 0;     ///< frames, for viewers

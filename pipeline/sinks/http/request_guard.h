@@ -43,7 +43,8 @@ struct Refusal {
 ///   script and style need none.
 std::optional<Refusal> judge(const RequestHead& request, const GuardSettings& settings);
 
-/// Of "name", "name:port", "[::1]:port": the name in lower case; empty where it is none of these.
+/// The name in `host`, which is "name", "name:port" or "[::1]:port", in lower case; empty where it
+/// is none of these.
 std::string host_name(std::string_view host);
 
 /// 128 random bits as 32 digits. Throws Error (failed).

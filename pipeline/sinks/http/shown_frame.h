@@ -31,7 +31,7 @@ public:
 
     const Frame& frame() const { return frame_; }
     std::chrono::nanoseconds latency() const { return latency_; }
-    /// By whoever held it last: the memory, for another frame.
+    /// Returns the memory for another frame; called by the last holder.
     Frame take_frame() { return std::move(frame_); }
 
     // Throw Error (failed) where the encoder does; jpeg() of sigma of a frame without is black.
@@ -40,7 +40,7 @@ public:
     const Bytes& tiff() const;          ///< sigma, 32-bit floats; empty where the frame has none
     const Bytes& events()
         const;  ///< PNG of bytes: 0 off, 128 none, 255 on; empty without a preview
-    /// For the page: a head and the images behind it, as page.js reads them.
+    /// What the live page is sent: a head and the images behind it, as page.js reads them.
     const Bytes& message() const;
 
 private:

@@ -21,7 +21,7 @@ struct VideoKind {
 /// Throws Error (usage) for an extension that is none of ours.
 const VideoKind& video_kind_of(const std::filesystem::path& path);
 
-/// By extension only.
+/// Whether the extension is that of a video; the file is not looked at.
 bool names_video(const std::filesystem::path& path);
 
 /// Where sigma goes when it has a video of its own: x.mp4 -> x.sigma.mp4.

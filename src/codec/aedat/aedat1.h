@@ -19,7 +19,7 @@ Dvs128Address read_dvs128_address(std::uint32_t address);
 /// kind pulse: the format does not say which edge.
 class Dvs128Events {
 public:
-    /// Of a sensor stated as smaller, px, what lies outside is out_of_range.
+    /// Events outside `width` x `height` px, where a smaller size was stated, are out_of_range.
     Dvs128Events(bool one_is_on, int width, int height)
         : one_is_on_(one_is_on), width_(width), height_(height) {}
     void take(const AedatRecord& record, std::int64_t t_us, Batch& into, Damage& damage);

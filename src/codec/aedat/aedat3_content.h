@@ -18,11 +18,11 @@ namespace eventide {
 /// new stream.
 class Aedat3Content {
 public:
-    /// Of the upper left part of `width` x `height` px. `lower_left`: rows are counted from the
-    /// last of the sensor's.
+    /// Gives the upper left `width` x `height` px of the sensor, which has `rows`; what lies
+    /// outside is out_of_range. `lower_left`: the file counts rows from the sensor's lowest.
     Aedat3Content(bool lower_left, int rows, int width, int height);
 
-    /// What take() gets next is the packet's beginning.
+    /// A packet begins, whose records take() gets next.
     void begin(const Aedat3Packet& packet);
     /// Whole records of the packet.
     void take(const Aedat3Packet& packet, std::span<const std::byte> records, Batch& into);

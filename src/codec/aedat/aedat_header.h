@@ -15,9 +15,10 @@ struct AedatHeaderLines {
     std::size_t end = 0;                  ///< bytes up to the first record
 };
 
-/// Whether a line of text may have it.
+/// Whether a header line may contain this character.
 bool is_aedat_text(char c);
-/// Of a line without its '\n', whether records follow it, whatever they begin with.
+/// Whether `line`, without its '\n', ends the header: records follow it, even where they look like
+/// another line.
 bool is_last_aedat_line(std::string_view line);
 
 /// Lines that begin with '#' and are text; "#End Of ASCII Header" and "#!END-HEADER" are the last

@@ -44,7 +44,7 @@ public:
             place(record, take);
     }
 
-    /// The next record is of another file, whose clock may have begun anew: then time goes on from
+    /// The next record is of another file, whose clock may have been reset: then time goes on from
     /// where it was.
     template <typename Take>
     void join(Take&& take) {

@@ -23,8 +23,8 @@ struct PercentLines {
 };
 PercentLines read_percent_lines(std::span<const std::byte> first_bytes);
 
-/// Whether a line may begin so, or is whole with its newline, where this holds for all of it but
-/// its last character.
+/// Whether `line`, which is not empty, can be the beginning of such a line, or is all of one with
+/// its newline. Only its last character is looked at: the same was asked for what comes before.
 bool is_percent_line_so_far(std::string_view line);
 /// "% end"; with its newline.
 bool is_last_percent_line(std::string_view line);
@@ -47,7 +47,7 @@ std::string evt_format_said(std::span<const std::byte> first_bytes);
 /// ("evt3") follow it. Old ones say nothing.
 bool is_of_other_format(std::span<const std::byte> header, std::string_view format);
 
-/// Of a RAW file whose lines, if any, do not say the format.
+/// `format` and where the data begin, for a RAW file whose lines, if any, do not say the format.
 EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format);
 
 /// Throws Error (input) naming what was found.

@@ -10,11 +10,11 @@
 
 namespace eventide {
 
-/// Of the times of a recording's first rows. Fractions are seconds. Whole numbers are microseconds,
-/// unless hardly a sensor sends so few events in them (100/s), or none so many, and another unit
-/// makes sense; microseconds and nanoseconds since 1970 stand out by themselves. Whole numbers with
-/// a decimal point are what numpy.savetxt() writes of microseconds. What was guessed with little to
-/// go by is added to `remarks`.
+/// The unit of `times`, those of a recording's first rows. Fractions are seconds. Whole numbers are
+/// microseconds, unless hardly a sensor sends so few events in them (100/s), or none so many, and
+/// another unit makes sense; microseconds and nanoseconds since 1970 stand out by themselves. Whole
+/// numbers with a decimal point are what numpy.savetxt() writes of microseconds. What was guessed
+/// with little to go by is added to `remarks`.
 TextTimeUnit guess_time_unit(std::span<const std::string_view> times,
                              std::vector<std::string>& remarks);
 

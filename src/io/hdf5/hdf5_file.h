@@ -14,7 +14,7 @@ public:
     explicit Hdf5File(const std::string& path);
 
     const std::string& path() const { return path_; }
-    /// Of data set or group; false also where it leads nowhere.
+    /// Whether there is a data set or group of this name; false also for a link that leads nowhere.
     bool has(const std::string& name) const;
     /// Throws Error (input): none of that name, or packed in a way that is not understood here,
     /// with what remedies that, or not all that its shape says is stored.
@@ -22,7 +22,8 @@ public:
     /// Names in a group, in alphabetical order; of the whole file with "/".
     std::vector<std::string> names_in(const std::string& group) const;
 
-    /// Of the group or data set `object` ("/" is the file itself). Empty where there is none.
+    /// Attribute `name` of the group or data set `object` ("/" is the file itself). Empty where
+    /// there is none.
     std::vector<double> number_attributes(const std::string& object, const std::string& name) const;
     std::string text_attribute(const std::string& object, const std::string& name) const;
 

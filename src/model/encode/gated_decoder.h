@@ -24,7 +24,7 @@ class GatedDecoder {
 public:
     GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels, const Backend& backend);
 
-    /// Of the map of codes that write_codes() writes.
+    /// Size of the map of codes that write_codes() writes.
     Extent latent_size() const { return latent_size_; }
 
     /// Numbers run() needs for each worker.
@@ -56,7 +56,7 @@ private:
                          const Tile& tile, float* scratch) noexcept;
     void add(const PaddedMap& before, bool is_float, Block& block, const Tile& tile,
              float* scratch) const noexcept;
-    /// By a convolution's reach.
+    /// Grows `touched` by 1 px each way, as far as a convolution reads.
     static void spread(Level& level) noexcept;
     void run_blocks(const GatedLevel& deepest, const PaddedMap& h, bool everywhere,
                     TileRunner& runner) noexcept;

@@ -30,8 +30,9 @@ public:
     /// Numbers advance() needs.
     std::size_t scratch_size() const;
     bool is_recurrent() const { return recurrent_; }
-    /// Of a recurrent level: consecutive tiles in whole rows. commit() of a group comes after
-    /// advance() of the next one, and before that of the one behind it.
+    /// How many consecutive tiles, in whole rows, go together in a recurrent level. commit() of
+    /// such a group comes after advance() of the next one, and before advance() of the one after
+    /// that.
     std::size_t group() const { return group_; }
     /// The next state of tile i. `states`: those of all levels; the top one reads `grid`.
     void advance(const Array3<float>& grid, std::vector<StateMap>& states, std::size_t i,

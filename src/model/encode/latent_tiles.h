@@ -28,11 +28,11 @@ private:
 
 class LatentTiles {
 public:
-    /// Of a map of height x width codes.
+    /// For a map of height x width codes.
     LatentTiles(int height, int width);
 
     const std::vector<Tile>& tiles() const { return tiles_; }
-    /// Of all steps until now; its `step` is the one at work.
+    /// In which step each tile last changed; its `step` is the one at work.
     const LatentHistory& history() const { return history_; }
 
     void begin_step() noexcept { ++history_.step; }

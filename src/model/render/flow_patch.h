@@ -36,7 +36,8 @@ public:
 
     int top() const { return top_; }
     int left() const { return left_; }
-    /// Of the direction that has less of it: some half of the sum of the squares of its gradients.
+    /// How much there is to align by in the direction that has least: half to all of the sum of the
+    /// squares of its gradients.
     float texture() const { return texture_; }
 
     /// The other frame, displaced by v, less this one; the means are left out. Returns the sum of

@@ -40,20 +40,20 @@ public:
     /// Time passes: events per pixel.
     void pass(const Array2<float>& events) noexcept;
 
-    /// To what the model shows now, from where it was followed to before. `since_before`: what is
-    /// at x now was at x + this then.
+    /// Aligns the image with `shown`, what the model shows now, starting from the previous
+    /// alignment. `since_before` becomes the motion since then: what is at x now was at x + this.
     void follow(const Array2<float>& shown, MotionField& since_before) noexcept;
-    /// The same for the first time after take().
+    /// The same for the first time after take(): there is no alignment yet.
     void follow(const Array2<float>& shown) noexcept;
 
-    /// What is where it was followed to was in the image at x + this.
+    /// The alignment: what follow() found at x is at x + this in the image.
     const MotionField& motion() const { return motion_; }
 
-    /// Where the image tells something of what is shown where it was followed to, 0 to 1.
+    /// How far, 0 to 1, the aligned image tells something of what was shown at the last follow().
     void tell_trust(Array2<float>& trust) noexcept;
 
-    /// The image, displaced, less what is shown. `back`: so many times `since_before` earlier than
-    /// where it was followed to.
+    /// The displaced image less `shown`; 0 where no image has been. `back` says for when: 0 at the
+    /// last follow(), 1 at the one before it, and between them `since_before` in proportion.
     void residual(const Array2<float>& shown, const MotionField& since_before, float back,
                   Array2<float>& residual) noexcept;
 

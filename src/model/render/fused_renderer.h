@@ -52,9 +52,10 @@ public:
     /// Images that came too late, in too great a number, or before a reset.
     std::uint64_t dropped() const { return dropped_; }
 
-    /// Of a live source; of a recording, whose images may all come before its events.
+    /// How many images wait at most: of a live source; of a recording, whose images may all come
+    /// before its events.
     static constexpr std::size_t kMaxWaiting = 64, kMaxWaitingOfRecording = 1024;
-    /// Instead of kMaxWaiting. Before the first.
+    /// So many instead of kMaxWaiting. Call it before the first image.
     void keep_at_most(std::size_t images) { most_waiting_ = images; }
 
 private:

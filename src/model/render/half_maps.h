@@ -14,7 +14,7 @@ inline float mix(float a, float b, float weight) {
 
 void fill(Array2<float>& map, float value) noexcept;
 
-/// Of the same size.
+/// Both are of the same size.
 void copy(const Array2<float>& from, Array2<float>& to) noexcept;
 
 /// Mean of each block of 2 x 2 pixels (of fewer at the edge): [h][w] -> [(h + 1) / 2][(w + 1) / 2].

@@ -42,8 +42,8 @@ public:
 
     void reset() noexcept;
 
-    /// There were event windows before the first one that advance() tells of: what is known at its
-    /// begin is not what is known where a stream begins. Before that.
+    /// Call it before the first advance() where there were event windows before it: what is known
+    /// at its begin is not what is known where a stream begins.
     void begin_within_stream() noexcept { windows_ = 1; }
 
     /// The next event window, its events per pixel, [y][x] of the sensor, and what the model shows
@@ -56,10 +56,9 @@ public:
     /// these.
     bool correct(const ReferenceImage& image, const Frame& rendered) noexcept;
 
-    /// To a frame as it was rendered for `request`, at frame.t within one of the last three
-    /// windows. `shown`: what the model shows then at the sensor's size, which may be the frame's
-    /// own intensity, as it was rendered.
-    /// prepare() was called for requests of this geometry last.
+    /// Corrects `frame`, which was rendered for `request` at a frame.t within one of the last three
+    /// windows. `shown`: what the model shows at that time, at the sensor's size; it may be the
+    /// frame's own intensity as rendered. The last prepare() was for requests of this geometry.
     void apply(const RenderRequest& request, const Array2<float>& shown, Frame& frame) noexcept;
 
     /// The memory that apply() needs for frames of this size and region.

@@ -44,7 +44,7 @@ public:
     static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
     static constexpr std::size_t kMaxFrames = 16;
 
-    /// For frames of this size; `tiles` each. Nothing is kept of frames of another.
+    /// Memory for frames of this size, `tiles` tiles each. What was kept before is forgotten.
     void make_room(const FrameGeometry& geometry, std::size_t tiles);
     void reset() noexcept;
 

@@ -47,8 +47,8 @@ public:
     /// The latent map of the next event window; it is copied. Every frame wanted of event windows
     /// that only LatentWindow::kLatentsKept kept must be rendered before.
     void push(const LatentMap& latent) noexcept;
-    /// The same without a copy where that can be: the codes of a map before are left in its place.
-    /// For maps that go back to the encoder.
+    /// The same without a copy where that can be: takes the codes out of `latent` and leaves those
+    /// of an earlier map, for the encoder to write over.
     void take(LatentMap& latent) noexcept;
     /// The stream has ended: what is left is rendered at the live edge.
     void finish() noexcept;
@@ -78,7 +78,7 @@ public:
     std::uint64_t pixels_rendered() const noexcept;
 
 private:
-    /// Of the ensemble's views, in `frame` as it fits.
+    /// The mean of the ensemble's views, in `frame`, which has the right size.
     void render_views(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                       Frame& frame) noexcept;
 

@@ -15,8 +15,9 @@ namespace eventide {
 /// samples in it (and in those beside it that they are blended with) read is the same in all event
 /// windows the frame reads; docs/model.md, "Renderer".
 ///
-/// Of a frame whose time is sampled as `t`, in the place of which `still_t` may be shown: without
-/// a difference, and of the thesis' network, whose codes change for ever, nothing is still.
+/// `t`: the samples of the frame's own time; `still_t`: those of the time that may be shown in its
+/// place. Where they are equal nothing is still; nor is it with the thesis' network, whose codes
+/// change for ever.
 /// `codes`: z_{k-2} .. z_{k+2}, null where unknown. Returns 1 for the pixels of the frame's part
 /// that are in such tiles.
 template <typename T>
