@@ -15,8 +15,8 @@
 
 namespace eventide {
 
-/// The counters at one moment. Lost: could not be taken. Skipped: left out on purpose. Damaged:
-/// made no sense.
+/// The counters at one moment. Lost: could not be taken. Skipped: not rendered. Damaged: made no
+/// sense.
 struct Snapshot {
     // read
     /// Of the source, where it is a camera. Set by whoever has it.
@@ -29,7 +29,7 @@ struct Snapshot {
     std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
     SensorDuration images_apart{0};     ///< from events; 0 where one clock tells both (ImageClock)
-    std::uint64_t filtered_events = 0;  ///< skipped by the event filter
+    std::uint64_t filtered_events = 0;  ///< left out by the event filter
     FlickerFound flicker;               ///< by the event filter
     Damage damaged;
     SlicerCounters slicing;
@@ -43,9 +43,11 @@ struct Snapshot {
     std::uint64_t state_resets = 0;
 
     // render, write
-    std::uint64_t frames = 0;          ///< written
-    std::uint64_t skipped_frames = 0;  ///< a live source, and rendering could not keep up
-    std::uint64_t broken_frames = 0;   ///< not finite, not written; the run ends with the first
+    std::uint64_t frames = 0;  ///< written
+    /// Of the frame clock, but not rendered: too late for a live source (--latency), left out by a
+    /// halved rate (--quality), or watched by no sink.
+    std::uint64_t skipped_frames = 0;
+    std::uint64_t broken_frames = 0;  ///< not finite, not written; the run ends with the first
     /// Times a sink that waited for somebody (a pause, a slow reader) asked whether to go on. Set
     /// by whoever gave it the question.
     std::uint64_t waits = 0;

@@ -80,7 +80,8 @@ void add_line(Text& text, const Snapshot& now) {
                  now.merged_windows);
     text.counter("state_resets_total", "Times the network's state was reset.", now.state_resets);
     text.counter("frames_total", "Frames written.", now.frames);
-    text.counter("skipped_frames_total", "Frames left out to keep the latency.",
+    text.counter("skipped_frames_total",
+                 "Frames not rendered: too late, left out by a halved rate, or watched by no sink.",
                  now.skipped_frames);
     text.counter("used_images_total", "Images of the camera that corrected frames.",
                  now.used_images);
