@@ -77,7 +77,7 @@ std::vector<Plot> error_against_sigma(const EvaluateReport& report) {
         pixels.x.push_back(bin.sigma / n);
         pixels.y.push_back(std::sqrt(bin.squared_error / n));
         if (const auto& patch = seen.patch_bins[i]; patch.patches > 0) {
-            patches.x.push_back(bin.sigma / n);
+            patches.x.push_back(patch.sigma / double(patch.patches));
             patches.y.push_back(patch.lpips / double(patch.patches));
         }
     }

@@ -64,6 +64,7 @@ Observations& Observations::operator+=(const Observations& other) {
         sigma_bins[i].sigma += other.sigma_bins[i].sigma;
         sigma_bins[i].squared_error += other.sigma_bins[i].squared_error;
         sigma_bins[i].pixels += other.sigma_bins[i].pixels;
+        patch_bins[i].sigma += other.patch_bins[i].sigma;
         patch_bins[i].lpips += other.patch_bins[i].lpips;
         patch_bins[i].patches += other.patch_bins[i].patches;
     }
@@ -133,6 +134,7 @@ std::optional<double> Judge::observe_patches(const Array2<float>& lpips_map,
             chosen = r;
             for (std::size_t i = 0; i < error.size(); ++i) {
                 Observations::PatchBin& bin = observations_.patch_bins[sigma_bin(doubt[i])];
+                bin.sigma += doubt[i];
                 bin.lpips += error[i];
                 ++bin.patches;
             }

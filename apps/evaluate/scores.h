@@ -46,7 +46,7 @@ struct Observations {
     static constexpr int kSigmaBins = 24;
     /// LPIPS of patches by their median sigma, in the same bins.
     struct PatchBin {
-        double lpips = 0;  ///< sum
+        double sigma = 0, lpips = 0;  ///< sums; sigma: of the medians
         std::uint64_t patches = 0;
     };
     struct PatchSize {

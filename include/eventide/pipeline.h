@@ -106,7 +106,7 @@ struct PipelineCounters {
     std::uint64_t event_windows = 0;   ///< steps of the network
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep the latency
     std::uint64_t frames = 0;          ///< written
-    std::uint64_t skipped_frames = 0;  ///< left out, to keep the latency
+    std::uint64_t skipped_frames = 0;  ///< of the clock, too late for the latency
     std::uint64_t used_images = 0;     ///< of the camera, corrected frames
     std::uint64_t dropped_images = 0;  ///< came too late for it, or were too many
     std::chrono::microseconds latency_p50{0};  ///< from read() to write(), median

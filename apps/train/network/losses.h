@@ -15,7 +15,7 @@ struct LossWeights {
     double l2 = 0;           ///< of the squared error: the mean, which is brighter
     double ssim = 0.6;       ///< 1 - SSIM, mean over sizes
     double lpips = 0.4;      ///< LPIPS-Squeeze
-    double nll = 0.1;        ///< of sigma; never moves mu
+    double nll = 0.1;        ///< of sigma; without a gradient by mu itself
     double temporal = 0.25;  ///< L1 between the changes from image to image
     double contrast = 0;     ///< 1 - structure and contrast of the image as one window
 };

@@ -102,8 +102,8 @@ TEST(Observations, OfTwoSequencesAreTheirSums) {
     Observations one, other, none;
     one.patch_sizes = {{8, .5, .25, 1}, {12, .25, .0625, 1}};
     other.patch_sizes = {{8, 1, .5, 2}, {12, 0, 0, 0}};
-    one.patch_bins[3] = {.5, 2};
-    other.patch_bins[3] = {.25, 4};
+    one.patch_bins[3] = {.1, .5, 2};
+    other.patch_bins[3] = {.2, .25, 4};
     one += other;
     one += none;
     none += one;  // into those that have seen nothing yet
@@ -115,6 +115,7 @@ TEST(Observations, OfTwoSequencesAreTheirSums) {
         EXPECT_EQ(first.squares, .75);
         EXPECT_EQ(first.frames, 3);
         EXPECT_EQ(sum->patch_sizes[1].frames, 1);
+        EXPECT_DOUBLE_EQ(sum->patch_bins[3].sigma, .3);
         EXPECT_EQ(sum->patch_bins[3].lpips, .75);
         EXPECT_EQ(sum->patch_bins[3].patches, 6U);
     }

@@ -27,21 +27,23 @@ struct QualityMargin {
     double thread, budget;
 };
 
-/// Among levels of one network, best first. It has no clock: measures come with their times, so
-/// that tests make them. One thread.
+/// Changes between the levels of one network, best first. It has no clock: measures come with their
+/// times, so that tests make them. One thread.
 ///
-/// Work is compared with the profile: by how much windows and frames cost more or less than
-/// measured there, every level will; but shorter windows are taken to cost at least what the
-/// profile says, and to be as many as there can be, for that is what they are when much moves. A
-/// level holds where encoding and frames each leave their thread a tenth, and all work together
-/// is within the budget. Down, to the best level that leaves a quarter (where encoding takes too
-/// long, to longer windows that leave 40 %, and where none are longer to the next one whose frames
-/// take less), after a second and a half in which the present one did not hold, encoding did not
-/// leave a quarter though windows might be longer, or event windows had to be merged; up, to the
-/// best level that leaves 40 %, and to the one it began with where that leaves a quarter of each
-/// thread, after 5 s in which there was one. A step up that was taken back within 15 s doubles this
-/// time; a minute without a change halves it: where the load lies between two levels, it stays at
-/// the lower one, and tries the other once a minute.
+/// What a level would take is the profile's figure, scaled by what windows and frames were measured
+/// to take. Levels with shorter windows than now are taken to cost at least what the profile says,
+/// and to have as many as there can be, as where all moves.
+///
+/// - A level *holds* within kHolds: encoding and frames each leave their thread a tenth, and both
+///   together are within the budget.
+/// - Down after 1.5 s in which the present level did not hold, encoding took more than kComfortable
+///   though windows might be longer, or windows had to be merged. To longer windows until encoding
+///   takes kEasy at most, where it is encoding that took too long; where none are longer, to the
+///   next level whose frames take less; else to the best level within kComfortable.
+/// - Up after 5 s in which a better level was within kEasy, or the level of the start within
+///   kAsChosen. A step up that is taken back within 15 s doubles the wait, a minute without a
+///   change halves it: where the load lies between two levels, the better one is tried once a
+///   minute.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
