@@ -3,7 +3,7 @@
 
 #include "pipeline/calibration/calibration.h"
 #include "pipeline/calibration/resampling.h"
-#include "pipeline/sinks/fan_out.h"
+#include "pipeline/sinks/changing_sink.h"
 
 #include <eventide/frame.h>
 
@@ -52,22 +52,15 @@ private:
     Frame shown_;
 };
 
-/// Undistorts each frame once and hands it to all the sinks behind it.
-class UndistortionSink final : public Sink {
+class UndistortionSink final : public ChangingSink {
 public:
     UndistortionSink(UndistortionPlan plan, std::vector<std::unique_ptr<Sink>> behind)
-        : undistortion_{std::move(plan)}, behind_{std::move(behind)} {}
-
-    void write(const Frame& frame) override { behind_.write(undistortion_.apply(frame)); }
-    void lookahead_is(int windows) override { behind_.lookahead_is(windows); }
-    void close() override { behind_.close(); }
-    bool wants_more() const override { return behind_.wants_more(); }
-    bool is_watched() const override { return behind_.is_watched(); }
-    HostTime::duration held() const override { return behind_.held(); }
+        : ChangingSink{std::move(behind)}, undistortion_{std::move(plan)} {}
 
 private:
+    const Frame& changed(const Frame& frame) override { return undistortion_.apply(frame); }
+
     Undistortion undistortion_;
-    FanOut behind_;
 };
 
 }  // namespace eventide

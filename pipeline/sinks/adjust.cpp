@@ -141,6 +141,6 @@ void Adjustment::sharpen() {
 }
 
 AdjustSink::AdjustSink(AdjustSettings settings, std::vector<std::unique_ptr<Sink>> behind)
-    : adjust_{settings}, behind_{std::move(behind)} {}
+    : ChangingSink{std::move(behind)}, adjust_{settings} {}
 
 }  // namespace eventide

@@ -1,7 +1,7 @@
 // What users may change about an image before it is shown: range, sharpness, side, border.
 #pragma once
 
-#include "pipeline/sinks/fan_out.h"
+#include "pipeline/sinks/changing_sink.h"
 
 #include <memory>
 #include <string_view>
@@ -68,21 +68,14 @@ private:
     Frame shown_;
 };
 
-/// Changes each frame once and hands it to all the sinks behind it.
-class AdjustSink : public Sink {
+class AdjustSink final : public ChangingSink {
 public:
     AdjustSink(AdjustSettings settings, std::vector<std::unique_ptr<Sink>> behind);
 
-    void write(const Frame& frame) override { behind_.write(adjust_.apply(frame)); }
-    void lookahead_is(int windows) override { behind_.lookahead_is(windows); }
-    void close() override { behind_.close(); }
-    bool wants_more() const override { return behind_.wants_more(); }
-    bool is_watched() const override { return behind_.is_watched(); }
-    HostTime::duration held() const override { return behind_.held(); }
-
 private:
+    const Frame& changed(const Frame& frame) override { return adjust_.apply(frame); }
+
     Adjustment adjust_;
-    FanOut behind_;
 };
 
 }  // namespace eventide

@@ -3,7 +3,6 @@
 
 #include "src/core/byte_order.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace eventide {
@@ -31,55 +30,19 @@ constexpr std::int64_t low_time_of(std::uint32_t word) {
     return word >> 22 & 0x3F;
 }
 
-EvtTimeHigh no_time_yet() {
-    return {28, 6};
-}
-
-std::uint32_t side(int px) {
-    return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
-}
-
 }  // namespace
-
-Evt2Base::Evt2Base(int width, int height)
-    : width_(side(width)), height_(side(height)), high_(no_time_yet()) {}
-
-void Evt2Base::take_event(std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool on,
-                          Batch& into) {
-    if (!high_.is_known()) return;  // taken up in the middle of the stream
-    const Event event{from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
-    if (x >= width_ || y >= height_) {
-        damage_.count(DamageReason::out_of_range);
-    } else if (t_us < last_event_us_ || high_.holds_later(event.t)) {
-        damage_.count(DamageReason::time_backwards);
-    } else if (!high_.is_sure()) {
-        const std::size_t before = into.events.size();
-        high_.hold(event, into, damage_);
-        take_let_go(into, before);
-    } else {
-        last_event_us_ = t_us;
-        into.events.push_back(event);
-    }
-}
-
-/// What waited for its time to be sure, from `before` on.
-void Evt2Base::take_let_go(const Batch& into, std::size_t before) {
-    if (into.events.size() > before) last_event_us_ = to_us(into.events.back().t);
-    move_clock(last_event_us_);
-    if (high_.is_sure()) move_clock(high_.us());
-}
 
 void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
     switch (upper >> 28) {
         case time_high: {
             const std::size_t before = into.events.size();
             high_.push(upper & 0x0FFFFFFF, into, damage_);
-            take_let_go(into, before);
-            if (last_event_us_ == kNoTime) seam_.see(high_.us(), into);
+            take_let_go_by_high(into, before);
             break;
         }
         case trigger:
-            if (high_.is_known()) take_trigger(upper, into);
+            take_trigger(high_.us() + low_time_of(upper), (upper & 1) != 0,
+                         std::uint8_t(upper >> 8 & 0x1F), into);
             break;
         case others:
         case continued:
@@ -89,60 +52,7 @@ void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
     }
 }
 
-void Evt2Base::take_trigger(std::uint32_t word, Batch& into) {
-    const std::int64_t t = high_.us() + low_time_of(word);
-    const Trigger found{from_us(t),
-                        (word & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
-                        std::uint8_t(word >> 8 & 0x1F)};
-    if (high_.is_sure()) {
-        into.triggers.push_back(found);
-        move_clock(t);
-        return;
-    }
-    const std::size_t before = into.events.size();
-    high_.hold(found, into, damage_);
-    take_let_go(into, before);
-}
-
-void Evt2Base::end(Batch& into) {
-    const std::size_t before = into.events.size();
-    high_.believe(into, damage_);
-    take_let_go(into, before);
-}
-
-void Evt2Base::begin_anew() {
-    high_.gap(damage_);
-    newest_us_ = last_event_us_ = kNoTime;
-}
-
-void Evt2Base::begin_file(std::span<const std::byte> header, std::string_view format) {
-    seam_.begin_file(last_event_us_);
-    begin_anew();
-    high_ = no_time_yet();
-    is_of_other_format_ = is_of_other_format(header, format);
-}
-
-void Evt2Base::reopened() {
-    resync();
-    high_.go_on_by_host();
-}
-
-std::optional<SensorTime> Evt2Base::clock() const {
-    return newest_us_ == kNoTime ? std::nullopt : std::optional(from_us(newest_us_));
-}
-
-void Evt2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    high_.hand_out(into);
-    words_.feed(
-        bytes, [&](auto words) { take(words, into); },
-        [&](auto header) {
-            end_file(into);
-            begin_file(header, "evt2");
-        });
-}
-
 void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
-    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 4);
     Event* const out = block_.data();
     const std::uint32_t width = width_, height = height_;
     std::int64_t high_us = high_.us(), last_us = last_event_us_;
@@ -179,40 +89,16 @@ void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
     move_clock(last_us);
 }
 
-void Evt2Parser::finish(Batch& into) {
-    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
-    end_file(into);
-}
-
-void Evt2Parser::end_file(Batch& into) {
-    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
-    words_.drop();
-    end(into);
-}
-
-void Evt2Parser::resync() {
-    words_.drop();
-    begin_anew();
-}
-
 Evt21Parser::Order Evt21Parser::order_of(const EvtHeader& header) {
     return header.halves_swapped ? Order::upper_half_first : Order::lower_half_first;
 }
 
-void Evt21Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    high_.hand_out(into);
-    words_.feed(
-        bytes, [&](auto words) { take(words, into); },
-        [&](auto header) {
-            end_file(into);
-            begin_file(header, "evt21");
-            const auto found = find_evt_header(header);
-            if (found && found->stream.format == "evt21") order_ = order_of(*found);
-        });
+void Evt21Parser::read_header(std::span<const std::byte> header) {
+    const auto found = find_evt_header(header);
+    if (found && found->stream.format == "evt21") order_ = order_of(*found);
 }
 
 void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
-    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 8);
     Event* const out = block_.data();
     const std::uint32_t width = width_, height = height_;
     const std::size_t upper_at = order_ == Order::upper_half_first ? 0 : 4;
@@ -247,22 +133,6 @@ void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
     }
     pass_on();
     move_clock(last_event_us_);
-}
-
-void Evt21Parser::finish(Batch& into) {
-    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
-    end_file(into);
-}
-
-void Evt21Parser::end_file(Batch& into) {
-    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
-    words_.drop();
-    end(into);
-}
-
-void Evt21Parser::resync() {
-    words_.drop();
-    begin_anew();
 }
 
 }  // namespace eventide

@@ -26,37 +26,12 @@ enum Type : unsigned {
 constexpr std::uint16_t kPadding = 0x9999;
 constexpr unsigned kColumnBits = 0x7FF, kOnBit = 0x800, kTimeBits = 0xFFF;
 
-EvtTimeHigh no_time_yet() {
-    return {12, 12};
-}
-
-std::uint32_t side(int px) {
-    return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
-}
-
 }  // namespace
-
-Evt3Parser::Evt3Parser(int width, int height, std::int64_t time_base_us)
-    : width_(side(width)),
-      height_(side(height)),
-      time_base_us_(time_base_us),
-      high_(no_time_yet()) {}
-
-void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    high_.hand_out(into);
-    words_.feed(
-        bytes, [&](auto words) { take(words, into); },
-        [&](auto header) {
-            end_file(into);
-            begin_file(header);
-        });
-}
 
 /// Rows, single events, vectors and times that grow, while nothing is wrong.
 void Evt3Parser::take(std::span<const std::byte> words, Batch& into) {
-    if (is_of_other_format_) return damage_.count(DamageReason::unknown_word, words.size() / 2);
     Event* const out = block_.data();
-    const std::uint32_t width = width_;
+    const std::uint32_t width = width_, height = height_;
     std::int64_t t = t_us_;
     std::uint32_t y = y_, base_x = base_x_;
     bool base_on = base_on_, plain = plain_;
@@ -83,7 +58,7 @@ void Evt3Parser::take(std::span<const std::byte> words, Batch& into) {
                 out[n++] = make(x, (word & kOnBit) != 0);
                 continue;
             }
-            if (type == address_y && x < height_) {
+            if (type == address_y && x < height) {
                 y = x;
                 continue;
             }
@@ -120,7 +95,7 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             y_ = content & kColumnBits;
             break;
         case address_x:
-            take_event(content & kColumnBits, (content & kOnBit) != 0, into);
+            take_column(content & kColumnBits, (content & kOnBit) != 0, into);
             break;
         case vector_base_x:
             base_x_ = content & kColumnBits;
@@ -134,7 +109,7 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             break;
         case time_low:
             t_us_ = high_.us() + content;
-            if (high_.is_sure()) move_clock();
+            if (high_.is_sure()) move_clock(t_us_);
             break;
         case time_high: {
             const std::int64_t high_us = high_.us();
@@ -143,12 +118,11 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             high_.push(content, into, damage_);
             // The low bits follow in their own word and begin anew.
             if (first || high_.us() != high_us) t_us_ = high_.us();
-            take_let_go(into, before);
-            if (last_event_us_ == kNoTime) seam_.see(high_.us() + time_base_us_, into);
+            take_let_go_by_high(into, before);
             break;
         }
         case trigger:
-            if (high_.is_known()) take_trigger(content, into);
+            take_trigger(t_us_, (content & 1) != 0, std::uint8_t(content >> 8), into);
             break;
         case continued_4:
         case continued_12:
@@ -164,65 +138,19 @@ void Evt3Parser::look() {
     plain_ = high_.is_sure() && y_ < height_ && t_us_ >= last_event_us_;
 }
 
-void Evt3Parser::move_clock() {
-    newest_us_ = std::max(newest_us_, t_us_);
-}
-
-/// What waited for its time to be sure, from `before` on.
-void Evt3Parser::take_let_go(const Batch& into, std::size_t before) {
-    if (into.events.size() > before) last_event_us_ = to_us(into.events.back().t) - time_base_us_;
-    newest_us_ = std::max(newest_us_, last_event_us_);
-    if (high_.is_sure()) move_clock();
-}
-
-void Evt3Parser::take_trigger(unsigned content, Batch& into) {
-    const Trigger found{from_us(t_us_ + time_base_us_),
-                        (content & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
-                        std::uint8_t(content >> 8)};
-    if (high_.is_sure()) {
-        into.triggers.push_back(found);
-        return;
-    }
-    const std::size_t before = into.events.size();
-    high_.hold(found, into, damage_);
-    take_let_go(into, before);
-}
-
-void Evt3Parser::take_event(unsigned x, bool on, Batch& into) {
-    if (!high_.is_known() || y_ == kNoRow) return;  // taken up in the middle of the stream
-    const Event event{from_us(t_us_ + time_base_us_), std::uint16_t(x), std::uint16_t(y_),
-                      Polarity(on)};
-    if (x >= width_ || y_ >= height_) {
-        damage_.count(DamageReason::out_of_range);
-    } else if (t_us_ < last_event_us_ || high_.holds_later(event.t)) {
-        damage_.count(DamageReason::time_backwards);
-    } else if (!high_.is_sure()) {
-        const std::size_t before = into.events.size();
-        high_.hold(event, into, damage_);
-        take_let_go(into, before);
-    } else {
-        last_event_us_ = t_us_;
-        into.events.push_back(event);
-    }
+void Evt3Parser::take_column(unsigned x, bool on, Batch& into) {
+    if (y_ != kNoRow) take_event(t_us_, x, y_, on, into);
 }
 
 void Evt3Parser::take_vector(unsigned mask, unsigned bits, Batch& into) {
     if (base_x_ == kNoColumn) return;
     for (; mask != 0; mask &= mask - 1)
-        take_event(base_x_ + unsigned(std::countr_zero(mask)), base_on_, into);
+        take_column(base_x_ + unsigned(std::countr_zero(mask)), base_on_, into);
     base_x_ = std::min(base_x_ + bits, kNoColumn - 1);
 }
 
-void Evt3Parser::finish(Batch& into) {
-    words_.finish([&](auto words) { take(words, into); }, [&](auto) { end_file(into); });
-    end_file(into);
-}
-
-void Evt3Parser::end_file(Batch& into) {
-    end_words();
-    const std::size_t before = into.events.size();
-    high_.believe(into, damage_);
-    take_let_go(into, before);
+void Evt3Parser::end(Batch& into) {
+    EvtParser::end(into);
     look();
 }
 
@@ -234,36 +162,15 @@ void Evt3Parser::end_message(Batch& into) {
     look();
 }
 
-void Evt3Parser::end_words() {
-    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
-    words_.drop();
-}
-
-void Evt3Parser::resync() {
-    words_.drop();
-    high_.gap(damage_);
+void Evt3Parser::begin_anew() {
+    EvtParser::begin_anew();
     y_ = kNoRow;
     base_x_ = kNoColumn;
-    newest_us_ = last_event_us_ = kNoTime;
     look();
 }
 
-void Evt3Parser::begin_file(std::span<const std::byte> header) {
-    seam_.begin_file(last_event_us_ == kNoTime ? kNoTime : last_event_us_ + time_base_us_);
-    resync();
-    high_ = no_time_yet();
-    is_of_other_format_ = is_of_other_format(header, "evt3");
+void Evt3Parser::read_header(std::span<const std::byte> header) {
     if (const auto found = find_evt_header(header)) time_base_us_ = found->time_base_us;
-}
-
-void Evt3Parser::reopened() {
-    resync();
-    high_.go_on_by_host();
-}
-
-std::optional<SensorTime> Evt3Parser::clock() const {
-    return newest_us_ == kNoTime ? std::nullopt
-                                 : std::optional(from_us(newest_us_ + time_base_us_));
 }
 
 }  // namespace eventide

@@ -2,68 +2,45 @@
 // (docs/protocols.md D.4).
 #pragma once
 
-#include "src/codec/parser.h"
-#include "src/codec/prophesee/evt_words.h"
-#include "src/codec/prophesee/joined_words.h"
+#include "src/codec/prophesee/evt_parser.h"
 #include "src/codec/stream.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
+#include <vector>
 
 namespace eventide {
 
-/// Reads bare words: what follows a file's header, or what a camera sends. Times are the stream's
-/// own, with wraps of the 24 bits counted from the first. What comes before the first time is
-/// passed over. A file that was joined behind another begins a new stream; words of one of another
-/// format count as unknown.
-class Evt3Parser final : public Parser {
+/// Times have 24 bits.
+class Evt3Parser final : public EvtWordParser<EvtParser, 2> {
 public:
-    /// Size in px, 0 when not known (then 2048, the most the format holds).
-    explicit Evt3Parser(int width = 0, int height = 0, std::int64_t time_base_us = 0);
+    explicit Evt3Parser(int width = 0, int height = 0, std::int64_t time_base_us = 0)
+        : EvtWordParser({"evt3", 12, 12}, width, height, time_base_us) {}
 
-    void parse(std::span<const std::byte> bytes, Batch& into) override;
-    void finish(Batch& into) override;
     /// Words do not go on in the next message, and a first time is believed: times of ROS are
     /// counted from a message's first.
     void end_message(Batch& into);
-    void resync() override;
-    void reopened() override;
-    void arrives(HostTime at) override { high_.arrives(at); }
-    std::optional<SensorTime> clock() const override;
-    const Damage& damaged() const override { return damage_; }
 
 private:
-    void take(std::span<const std::byte> words, Batch& into);
+    void take(std::span<const std::byte> words, Batch& into) override;
     void take_one(std::uint16_t word, Batch& into);
     void take_vector(unsigned mask, unsigned bits, Batch& into);
-    void take_event(unsigned x, bool on, Batch& into);
-    void take_trigger(unsigned content, Batch& into);
-    void take_let_go(const Batch& into, std::size_t before);
-    void end_words();
-    void end_file(Batch& into);
-    void begin_file(std::span<const std::byte> header);
-    void move_clock();
+    void take_column(unsigned x, bool on, Batch& into);
     void look();
 
-    std::uint32_t width_, height_;
-    std::int64_t time_base_us_;
-    JoinedWords<2> words_;
-    EventBlock block_;
-    Damage damage_;
+    std::int64_t told_us() const override { return t_us_; }
+    void end(Batch& into) override;
+    void begin_anew() override;
+    void read_header(std::span<const std::byte> header) override;
 
-    EvtTimeHigh high_;
-    FileSeam seam_;
-    bool is_of_other_format_ = false;   ///< the joined file
-    std::int64_t t_us_ = 0;             ///< of the word being read, without time_base_us_
-    std::int64_t newest_us_ = kNoTime;  ///< told
-    std::int64_t last_event_us_ = kNoTime;
+    static constexpr std::uint32_t kNoRow = 1U << 16, kNoColumn = 1U << 16;
+
+    std::int64_t t_us_ = 0;  ///< of the word being read, without time_base_us_
     std::uint32_t y_ = kNoRow;
     std::uint32_t base_x_ = kNoColumn;  ///< of the next vector
     bool base_on_ = false;
     bool plain_ = false;  ///< events of this time and row may be taken without a look
-
-    static constexpr std::uint32_t kNoRow = 1U << 16, kNoColumn = 1U << 16;
 };
 
 /// Whether the writer has a word for it: rising and falling edges of sources 0 to 15.
