@@ -58,6 +58,11 @@ void UdpTarget::write(const Batch& batch) {
         else
             ++lost_;
     }
+    lost_ += socket_.take_refused();
+}
+
+void UdpTarget::finish() {
+    lost_ += socket_.take_refused();
 }
 
 }  // namespace eventide

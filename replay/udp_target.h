@@ -24,7 +24,7 @@ public:
 
     const FormatHolds& holds() const override;
     void write(const Batch& batch) override;
-    void finish() override {}
+    void finish() override;
     std::uint64_t bytes_written() const override { return bytes_; }
     std::uint64_t lost() const override { return lost_; }
 

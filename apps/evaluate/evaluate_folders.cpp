@@ -68,15 +68,16 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
     EvaluateReport report;
     report.subject = "folders " + frames.string() + " against " + references.string();
     if (lpips) report.lpips_name = lpips->name();
+    const auto is_alone = [&](const fs::path& folder, const fs::path& other) {
+        if (fs::is_directory(other)) return false;
+        if (warn && !images_in(folder).empty())
+            warn(folder.string() + ": is left out, as there is no folder " + other.string());
+        return true;
+    };
+    for (const fs::path& name : folders_in(frames)) is_alone(frames / name, references / name);
     for (const fs::path& name : folders_in(references)) {
-        const auto truths = images_in(references / name);
-        if (!fs::is_directory(frames / name)) {
-            if (warn && !truths.empty())
-                warn((references / name).string() + ": is left out, as there is no folder " +
-                     (frames / name).string());
-            continue;
-        }
-        const auto images = images_in(frames / name);
+        if (is_alone(references / name, frames / name)) continue;
+        const auto images = images_in(frames / name), truths = images_in(references / name);
         if (!images.empty() || !truths.empty())
             report.sequences.push_back(compare(name.string(), images, truths, judge));
     }

@@ -68,17 +68,27 @@ std::uint64_t bisect(Probe& probe, std::uint64_t begin, std::uint64_t end, std::
     return low;
 }
 
+/// What came out is not all before t. The clock alone does not say it: where it began anew since,
+/// as between files that were joined, it is earlier again.
+bool reaches(const Batch& batch, const Parser& parser, SensorTime t) {
+    const auto any = [t](const auto& items) {
+        return std::ranges::any_of(items, [t](const auto& item) { return item.t >= t; });
+    };
+    return (parser.clock() && *parser.clock() >= t) || any(batch.events) || any(batch.images) ||
+           any(batch.imu) || any(batch.triggers);
+}
+
 /// Reads from the beginning, and keeps nothing but the parser as it was before the last chunk.
 SeekPoint skim(const ByteFile& file, const StreamHeader& header, std::unique_ptr<Parser> parser,
                const SeekMeans& means, SensorTime t) {
     std::vector<std::byte> bytes(kCloseEnoughBytes);
-    Batch unused;
+    Batch batch;
     SeekPoint place{header.data_offset, means.copy(*parser)};
     for (;;) {
         const std::size_t n = file.read_at(place.position, bytes);
-        parser->parse({bytes.data(), n}, unused);
-        unused.clear();
-        if (n < bytes.size() || (parser->clock() && *parser->clock() >= t)) return place;
+        batch.clear();
+        parser->parse({bytes.data(), n}, batch);
+        if (n < bytes.size() || reaches(batch, *parser, t)) return place;
         place.position += n;
         place.parser = means.copy(*parser);
     }

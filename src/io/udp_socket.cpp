@@ -112,7 +112,8 @@ UdpSocket::UdpSocket(UdpSocket&& other) noexcept
     : socket_(std::exchange(other.socket_, -1)),
       name_(std::move(other.name_)),
       dropped_(other.dropped_),
-      dropped_told_(other.dropped_told_) {}
+      dropped_told_(other.dropped_told_),
+      refused_(other.refused_) {}
 
 UdpSocket::~UdpSocket() {
     if (socket_ >= 0) ::close(socket_);
@@ -163,8 +164,18 @@ std::uint64_t UdpSocket::take_lost() {
 }
 
 bool UdpSocket::send(std::span<const std::byte> datagram) {
-    return ::send(socket_, datagram.data(), datagram.size(), MSG_NOSIGNAL) ==
-           ssize_t(datagram.size());
+    // That one before was refused is told, once, in place of sending this one.
+    for (;; ++refused_)
+        if (const auto n = ::send(socket_, datagram.data(), datagram.size(), MSG_NOSIGNAL);
+            n >= 0 || errno != ECONNREFUSED)
+            return n == ssize_t(datagram.size());
+}
+
+std::uint64_t UdpSocket::take_refused() {
+    int error = 0;
+    socklen_t size = sizeof error;
+    ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &size);
+    return std::exchange(refused_, 0) + (error == ECONNREFUSED ? 1 : 0);
 }
 
 }  // namespace eventide

@@ -42,8 +42,10 @@ public:
     /// Datagrams that the system had no room for since the last call: those before the newest.
     std::uint64_t take_lost();
 
-    /// False where the system had no room, or nobody listens there.
+    /// False where the system had no room.
     bool send(std::span<const std::byte> datagram);
+    /// Datagrams sent of which the system has told, since the last call, that nobody listens there.
+    std::uint64_t take_refused();
 
 private:
     UdpSocket(int socket, std::string name) : socket_(socket), name_(std::move(name)) {}
@@ -51,6 +53,7 @@ private:
     int socket_;
     std::string name_;
     std::uint32_t dropped_ = 0, dropped_told_ = 0;  // as the system counts, since it was opened
+    std::uint64_t refused_ = 0;
 };
 
 }  // namespace eventide

@@ -8,6 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <random>
 #include <string>
@@ -73,6 +76,36 @@ TEST_P(Udp, EventsAreReadAsTheyWereSent) {
     EXPECT_EQ(source.counters()[CameraCount::transfers], 20U);
     EXPECT_EQ(source.counters()[CameraCount::bytes], target.bytes_written());
     EXPECT_EQ(target.lost(), 0U);
+}
+
+/// A port of this machine at which nobody listens.
+std::uint16_t free_port() {
+    return UdpSocket::listening(UdpName::parse("//127.0.0.1:0")).port();
+}
+
+TEST(Udp, EveryDatagramThatNobodyReceivedIsCounted) {
+    constexpr std::uint64_t kDatagrams = 20;
+    UdpTarget target("udp://127.0.0.1:" + std::to_string(free_port()), {});
+    Batch sent;
+    sent.events = random_events(3, kDatagrams * UdpTarget::kEventsAtATime);
+    target.write(sent);
+    target.finish();
+    EXPECT_EQ(target.lost(), kDatagrams);
+}
+
+TEST(Udp, WhoeverBeginsToListenMissesNothingFromThenOn) {
+    const std::uint16_t port = free_port();
+    UdpSocket socket = UdpSocket::sending(UdpName::parse("//127.0.0.1:" + std::to_string(port)));
+    const std::array<std::byte, 3> first{}, second{std::byte{7}};
+    EXPECT_TRUE(socket.send(first));
+    UdpSocket listener =
+        UdpSocket::listening(UdpName::parse("//127.0.0.1:" + std::to_string(port)));
+    EXPECT_TRUE(socket.send(second)) << "the first was refused, not this one";
+    std::array<std::byte, 8> got{};
+    EXPECT_EQ(listener.receive(got, std::chrono::seconds{5}), second.size());
+    EXPECT_EQ(got[0], second[0]);
+    EXPECT_EQ(socket.take_refused(), 1U);
+    EXPECT_EQ(socket.take_refused(), 0U);
 }
 
 TEST(Udp, AClockThatBeganAnewIsSentAsItIs) {

@@ -55,6 +55,17 @@ TEST(EvaluateFolders, LeaveOutNoSequenceInSilence) {
     EXPECT_EQ(warnings, std::vector<std::string>{(folder / "references/two").string() +
                                                  ": is left out, as there is no folder " +
                                                  (folder / "frames/two").string()});
+    for (const char* alone : {"frames/three", "frames/no_images"})
+        fs::create_directory(folder / alone);
+    write_image(folder / "frames/three/0.png", test_image(kHeight, kWidth, 0));
+    warnings.clear();
+    EXPECT_EQ(evaluate().overall.frames, 1);
+    EXPECT_EQ(warnings,
+              (std::vector<std::string>{
+                  (folder / "frames/three").string() + ": is left out, as there is no folder " +
+                      (folder / "references/three").string(),
+                  (folder / "references/two").string() + ": is left out, as there is no folder " +
+                      (folder / "frames/two").string()}));
     write_image(folder / "references/0.png", test_image(kHeight, kWidth, 0));
     EXPECT_EQ(evaluate().overall.frames, 1);
     EXPECT_EQ(warnings.back(), (folder / "references").string() +
