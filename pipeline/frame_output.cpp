@@ -90,8 +90,8 @@ void FrameOutput::present_oldest() {
     if (settings_.live) open_dropper();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
-        const bool is_shown =
-            is_watched() && (settings_.live ? dropper_.keeps_next(waiting_()) : is_wanted(due));
+        const bool is_shown = is_watched() && (settings_.live ? dropper_.keeps_next(waiting_())
+                                                              : is_kept(due.index, halvings_));
         if (!is_shown) {
             counters_.present.skipped_frames.add();
             continue;
@@ -114,11 +114,6 @@ void FrameOutput::tell_lookahead() {
 bool FrameOutput::is_watched() const {
     return sinks_.empty() ||
            std::ranges::any_of(sinks_, [](const Sink* sink) { return sink->is_watched(); });
-}
-
-/// Of a live line the dropper decides.
-bool FrameOutput::is_wanted(const DueFrame& due) const {
-    return (due.index & ((std::uint64_t{1} << halvings_) - 1)) == 0;
 }
 
 void FrameOutput::open_dropper() {
