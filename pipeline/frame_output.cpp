@@ -3,6 +3,7 @@
 
 #include "pipeline/first_error.h"
 #include "src/core/error.h"
+#include "src/core/finite_frame.h"
 
 #include <algorithm>
 #include <chrono>
@@ -156,16 +157,13 @@ HostTime::duration FrameOutput::present(const DueFrame& due, Waiting& from) {
     return written - begun;
 }
 
-/// A state that has a NaN keeps it, so no later frame will be better.
 void FrameOutput::check_finite() {
-    if (is_finite(frame_.intensity) && is_finite(frame_.sigma) &&
+    if (is_finite(frame_) &&
         std::ranges::all_of(frame_.colour, [](const auto& plane) { return is_finite(plane); }))
         return;
     counters_.present.broken_frames.add();
-    throw Error(ErrorKind::input, "frame " + std::to_string(frame_.index) + ", at " +
-                                      std::to_string(to_us(frame_.t)) +
-                                      " us: expected finite numbers of the network, found NaN or "
-                                      "infinity: its weights or its state are damaged");
+    refuse_not_finite("frame " + std::to_string(frame_.index) + ", at " +
+                      std::to_string(to_us(frame_.t)) + " us");
 }
 
 void FrameOutput::close() {
