@@ -71,9 +71,6 @@ Batch held_of(const Batch& batch, const FormatHolds& holds) {
     return held;
 }
 
-/// As many as give a scene of 30 objects little repetition.
-constexpr std::size_t kProceduralTextures = 48;
-
 void print_scenes() {
     for (const SimulationPreset& preset : simulation_presets())
         std::cout << preset.name << std::string(16 - preset.name.size(), ' ') << preset.what
