@@ -2,6 +2,7 @@
 #include "library/network_options.h"
 #include "library/reconstructor_impl.h"
 #include "src/core/error.h"
+#include "src/core/finite_frame.h"
 #include "src/core/frame_stamp.h"
 #include "src/core/number_text.h"
 
@@ -102,11 +103,7 @@ void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Fr
         renderer_.render(request_, frame);
     }
     ++counters_.frames;
-    if (is_finite(frame.intensity) && is_finite(frame.sigma)) return;
-    throw Error(ErrorKind::input,
-                "frame at " + us(t) +
-                    ": expected finite numbers of the network, found NaN or infinity: its weights "
-                    "or its state are damaged");
+    if (!is_finite(frame)) refuse_not_finite("frame at " + us(t));
 }
 
 /// Rendering cannot fail afterwards.

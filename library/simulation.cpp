@@ -10,9 +10,6 @@
 namespace eventide {
 namespace {
 
-/// As many as the program takes.
-constexpr std::size_t kProceduralTextures = 48;
-
 SimRecordingSettings settings_of(const SimulationOptions& options) {
     const SimulationPreset& preset = simulation_preset(options.scene);
     return {.scene = preset.scene,

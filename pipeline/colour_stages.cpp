@@ -1,6 +1,8 @@
 // Colour out of a sensor with a colour filter.
 #include "pipeline/colour_stages.h"
 
+#include "src/core/grey.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -26,9 +28,6 @@ void take_site(const Array2<float>& map, const BayerSite& site, Array2<float>& p
     for (int y = 0; y < part.height(); ++y)
         for (int x = 0; x < part.width(); ++x) part(y, x) = map(2 * y + site.y, 2 * x + site.x);
 }
-
-/// Rec. 601, as src/core/grey.h.
-constexpr std::array<float, 3> kLuma{.114F, .587F, .299F};
 
 }  // namespace
 
@@ -154,7 +153,7 @@ void ColourRenderStage::render(SensorTime t, const Window& window, Frame& frame)
                 };
                 const float above = across(row.first);
                 colour[c] = above + row.share * (across(row.second) - above);
-                luma += kLuma[c] * colour[c];
+                luma += kLumaBgr[c] * colour[c];
             }
             for (std::size_t c = 0; c < 3; ++c)
                 frame.colour[c](y, x) = frame.intensity(y, x) + colour[c] - luma;

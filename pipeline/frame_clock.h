@@ -42,6 +42,16 @@ private:
     SensorTime t0_;
 };
 
+/// Whether a frame of the clock is one of every 2^halvings-th.
+constexpr bool is_kept(std::uint64_t index, unsigned halvings) {
+    return (index & ((std::uint64_t{1} << halvings) - 1)) == 0;
+}
+/// How many of the frames before `end` are.
+constexpr std::uint64_t kept_before(std::uint64_t end, unsigned halvings) {
+    const std::uint64_t step = std::uint64_t{1} << halvings;
+    return (end + step - 1) / step;
+}
+
 /// One frame asked for.
 struct DueFrame {
     SensorTime t;

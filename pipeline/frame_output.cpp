@@ -3,6 +3,7 @@
 
 #include "pipeline/first_error.h"
 #include "src/core/error.h"
+#include "src/core/finite_frame.h"
 
 #include <algorithm>
 #include <chrono>
@@ -90,8 +91,8 @@ void FrameOutput::present_oldest() {
     if (settings_.live) open_dropper();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
-        const bool is_shown =
-            is_watched() && (settings_.live ? dropper_.keeps_next(waiting_()) : is_wanted(due));
+        const bool is_shown = is_watched() && (settings_.live ? dropper_.keeps_next(waiting_())
+                                                              : is_kept(due.index, halvings_));
         if (!is_shown) {
             counters_.present.skipped_frames.add();
             continue;
@@ -114,11 +115,6 @@ void FrameOutput::tell_lookahead() {
 bool FrameOutput::is_watched() const {
     return sinks_.empty() ||
            std::ranges::any_of(sinks_, [](const Sink* sink) { return sink->is_watched(); });
-}
-
-/// Of a live line the dropper decides.
-bool FrameOutput::is_wanted(const DueFrame& due) const {
-    return (due.index & ((std::uint64_t{1} << halvings_) - 1)) == 0;
 }
 
 void FrameOutput::open_dropper() {
@@ -161,16 +157,13 @@ HostTime::duration FrameOutput::present(const DueFrame& due, Waiting& from) {
     return written - begun;
 }
 
-/// A state that has a NaN keeps it, so no later frame will be better.
 void FrameOutput::check_finite() {
-    if (is_finite(frame_.intensity) && is_finite(frame_.sigma) &&
+    if (is_finite(frame_) &&
         std::ranges::all_of(frame_.colour, [](const auto& plane) { return is_finite(plane); }))
         return;
     counters_.present.broken_frames.add();
-    throw Error(ErrorKind::input, "frame " + std::to_string(frame_.index) + ", at " +
-                                      std::to_string(to_us(frame_.t)) +
-                                      " us: expected finite numbers of the network, found NaN or "
-                                      "infinity: its weights or its state are damaged");
+    refuse_not_finite("frame " + std::to_string(frame_.index) + ", at " +
+                      std::to_string(to_us(frame_.t)) + " us");
 }
 
 void FrameOutput::close() {

@@ -77,7 +77,6 @@ private:
     void tell_lookahead();
     void open_dropper();
     bool is_watched() const;
-    bool is_wanted(const DueFrame& due) const;
     void check_silence(const Waiting& held);
     void check_finite();
     HostTime::duration present(const DueFrame& due, Waiting& from);

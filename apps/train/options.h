@@ -69,6 +69,19 @@ private:
         std::string value() const { return setting.show().front(); }
     };
 
+    template <typename T>
+    void add(const std::string& name, T& target, const std::string& help, Use use = Use::learning);
+    template <typename Enum>
+    void add_choice(const std::string& name, Enum& target, const std::string& help,
+                    const std::vector<Word<Enum>>& words);
+    void add_run_options(TrainOptions& o);
+    void add_network_options(TrainOptions& o);
+    void add_data_options(TrainOptions& o);
+    void add_scene_options(TrainOptions& o);
+    void add_sensor_options(TrainOptions& o);
+    void add_loss_options(TrainOptions& o);
+    void add_schedule_options(TrainOptions& o);
+
     std::vector<Option> options_;
 };
 

@@ -41,7 +41,7 @@ inline constexpr Register kDvsColumns{dvs, 0}, kDvsRows{dvs, 1}, kDvsOrientation
     kDvsRoiStartColumn{dvs, 41}, kDvsRoiStartRow{dvs, 42}, kDvsRoiEndColumn{dvs, 43},
     kDvsRoiEndRow{dvs, 44}, kDvsHasSkip{dvs, 50}, kDvsSkip{dvs, 51}, kDvsSkipEvery{dvs, 52},
     kDvsHasPolarityFilter{dvs, 60}, kDvsPolarityFlatten{dvs, 61}, kDvsPolaritySuppress{dvs, 62},
-    kDvsPolarityWhich{dvs, 63}, kDvsHasStatistics{dvs, 80}, kDvsDropped{dvs, 85};
+    kDvsPolarityWhich{dvs, 63}, kDvsHasStatistics{dvs, 80};
 
 inline constexpr Register kApsColumns{aps, 0}, kApsRows{aps, 1}, kApsOrientation{aps, 2},
     kApsColorFilter{aps, 3}, kApsRun{aps, 4}, kApsWaitOnStall{aps, 5}, kApsHasGlobalShutter{aps, 6},

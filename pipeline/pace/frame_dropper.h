@@ -1,6 +1,7 @@
 // Which frames a live line renders when it cannot render all: latency stays, frames go.
 #pragma once
 
+#include "pipeline/frame_clock.h"
 #include "src/core/sensor_time.h"
 
 #include <algorithm>
@@ -35,7 +36,8 @@ public:
         opened_before_ = true;
         next_ = due.first;
         halvings_ = due.halvings;
-        candidates_ = multiples_below(due.first + due.frames) - multiples_below(due.first);
+        candidates_ =
+            kept_before(due.first + due.frames, halvings_) - kept_before(due.first, halvings_);
         done_ = 0;
         affordable_ = candidates_;
         if (frame_s_ > 0 && interval_s_ > 0) {
@@ -49,7 +51,7 @@ public:
 
     /// Asked once for each due frame, oldest first. `waiting`: event windows behind this one.
     bool keeps_next(std::size_t waiting) {
-        if ((next_++ & ((std::uint64_t{1} << halvings_) - 1)) != 0) return false;
+        if (!is_kept(next_++, halvings_)) return false;
         const std::uint64_t i = done_++;
         if (waiting >= waits_at_most_) return false;
         // All would be late: the newest is rendered where nothing newer is there.
@@ -70,11 +72,6 @@ private:
     // some twenty.
     static constexpr double kNewShare = 0.1;
 
-    /// How many numbers below n are candidates: multiples of 2^halvings_.
-    std::uint64_t multiples_below(std::uint64_t n) const {
-        const std::uint64_t step = std::uint64_t{1} << halvings_;
-        return (n + step - 1) / step;
-    }
     static double seconds(HostTime::duration d) { return std::chrono::duration<double>(d).count(); }
     static void learn(double& mean, double sample) {
         mean = mean > 0 ? mean + kNewShare * (sample - mean) : sample;

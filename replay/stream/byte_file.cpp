@@ -94,16 +94,6 @@ std::size_t ByteFile::read_some(std::span<std::byte> into, const std::function<b
     return 0;
 }
 
-std::size_t ByteFile::read_all(std::span<std::byte> into) {
-    std::size_t done = 0;
-    while (done < into.size()) {
-        const std::size_t n = read_some(into.subspan(done));
-        if (n == 0) break;
-        done += n;
-    }
-    return done;
-}
-
 std::size_t ByteFile::read_at(std::uint64_t offset, std::span<std::byte> into) const {
     std::size_t done = 0;
     while (done < into.size()) {

@@ -35,9 +35,6 @@ public:
     /// 20 ms that there are none: true throws Error (failed).
     std::size_t read_some(std::span<std::byte> into, const std::function<bool()>& give_up = {});
 
-    /// Reads until `into` is full or the end.
-    std::size_t read_all(std::span<std::byte> into);
-
     /// Bytes at an offset, without moving position(); fewer than asked only at the end.
     std::size_t read_at(std::uint64_t offset, std::span<std::byte> into) const;
 

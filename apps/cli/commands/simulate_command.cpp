@@ -9,6 +9,7 @@
 #include "replay/formats.h"
 #include "replay/written_data.h"
 #include "src/core/error.h"
+#include "src/core/grey.h"
 #include "src/core/number_text.h"
 #include "src/simulate/conditions.h"
 #include "src/simulate/presets.h"
@@ -42,15 +43,14 @@ Frame frame_of(const Truth& truth) {
     return frame;
 }
 
-/// Intensity is the luma of Rec. 601.
+/// Intensity is the luma.
 Frame frame_of(const ColourRecording::Truths& truths, std::size_t i) {
     Frame frame = frame_of(truths[0][i]);
-    constexpr std::array<float, 3> kLuma{.114F, .587F, .299F};
     for (float& v : frame.intensity.values()) v = 0;
     for (std::size_t c = 0; c < truths.size(); ++c) {
         frame.colour[c] = truths[c][i].image;
         for (std::size_t k = 0; k < frame.intensity.values().size(); ++k)
-            frame.intensity.values()[k] += kLuma[c] * frame.colour[c].values()[k];
+            frame.intensity.values()[k] += kLumaBgr[c] * frame.colour[c].values()[k];
     }
     return frame;
 }
@@ -70,9 +70,6 @@ Batch held_of(const Batch& batch, const FormatHolds& holds) {
     if (holds.images) held.images = batch.images;
     return held;
 }
-
-/// As many as give a scene of 30 objects little repetition.
-constexpr std::size_t kProceduralTextures = 48;
 
 void print_scenes() {
     for (const SimulationPreset& preset : simulation_presets())

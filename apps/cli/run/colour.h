@@ -6,8 +6,9 @@
 #include "pipeline/colour_stages.h"
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
-#include "pipeline/source.h"
 #include "src/model/encode/encoder.h"
+
+#include <eventide/event.h>
 
 #include <array>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "apps/cli/run/colour.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/reference_images.h"
-#include "pipeline/model_render_stage.h"
+#include "pipeline/images_on_the_way.h"
 #include "pipeline/stages.h"
 
 #include <optional>

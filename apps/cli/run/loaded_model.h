@@ -2,10 +2,11 @@
 #pragma once
 
 #include "apps/cli/settings/run_settings.h"
-#include "pipeline/source.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/model_file.h"
 #include "src/model/render/renderer.h"
+
+#include <eventide/event.h>
 
 #include <filesystem>
 

@@ -1,8 +1,6 @@
 // See fast_renderer.h; docs/model.md has the formulas.
 #include "src/model/render/fast_renderer.h"
 
-#include "src/nn/load_weights.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -5,6 +5,7 @@
 #include "src/simulate/scene/textures.h"
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -28,6 +29,9 @@ std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder
 /// All images of a folder; longer sides than `longest` px are shrunk, 0 leaves them.
 std::shared_ptr<TextureLibrary> textures_from_folder(const std::filesystem::path& folder,
                                                      int longest = 1024);
+
+/// Of a recording: as many as give a scene of 30 objects little repetition.
+inline constexpr std::size_t kProceduralTextures = 48;
 
 /// What a user names: a folder of images, a pack (texture_pack.h), or nothing, which gives
 /// `procedural` made-up ones. Throws Error (input).
