@@ -28,6 +28,19 @@ void with_pixels(v4l2_format& format, Use use) {
         use(format.fmt.pix);
 }
 
+/// What ioctls take that name a mapped buffer; `plane` has to live as long.
+v4l2_buffer mapped_buffer(std::uint32_t type, v4l2_plane& plane, std::uint32_t index = 0) {
+    v4l2_buffer buffer{};
+    buffer.index = index;
+    buffer.type = type;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    if (is_multi_planar(type)) {
+        buffer.m.planes = &plane;
+        buffer.length = 1;
+    }
+    return buffer;
+}
+
 }  // namespace
 
 std::string fourcc_text(std::uint32_t fourcc) {
@@ -141,15 +154,8 @@ void V4l2Device::map_buffers(int wanted) {
     if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_REQBUFS, &request); error != 0)
         fail("gives no buffers", error);
     for (std::uint32_t i = 0; i < request.count; ++i) {
-        v4l2_buffer buffer{};
         v4l2_plane plane{};
-        buffer.index = i;
-        buffer.type = type_;
-        buffer.memory = V4L2_MEMORY_MMAP;
-        if (is_multi_planar(type_)) {
-            buffer.m.planes = &plane;
-            buffer.length = 1;
-        }
+        v4l2_buffer buffer = mapped_buffer(type_, plane, i);
         if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QUERYBUF, &buffer); error != 0)
             fail("does not describe its buffers", error);
         const std::size_t length = is_multi_planar(type_) ? plane.length : buffer.length;
@@ -163,16 +169,9 @@ void V4l2Device::map_buffers(int wanted) {
 }
 
 int V4l2Device::queue(std::uint32_t index) {
-    v4l2_buffer buffer{};
     v4l2_plane plane{};
-    buffer.index = index;
-    buffer.type = type_;
-    buffer.memory = V4L2_MEMORY_MMAP;
-    if (is_multi_planar(type_)) {
-        plane.length = std::uint32_t(buffers_[index].bytes().size());
-        buffer.m.planes = &plane;
-        buffer.length = 1;
-    }
+    v4l2_buffer buffer = mapped_buffer(type_, plane, index);
+    plane.length = std::uint32_t(buffers_[index].bytes().size());
     return v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer);
 }
 
@@ -188,14 +187,8 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
 }
 
 V4l2Device::Status V4l2Device::dequeue(Filled& into) {
-    v4l2_buffer buffer{};
     v4l2_plane plane{};
-    buffer.type = type_;
-    buffer.memory = V4L2_MEMORY_MMAP;
-    if (is_multi_planar(type_)) {
-        buffer.m.planes = &plane;
-        buffer.length = 1;
-    }
+    v4l2_buffer buffer = mapped_buffer(type_, plane);
     const int error = v4l2_ioctl(fd_.get(), VIDIOC_DQBUF, &buffer);
     if (error == EAGAIN) return Status::timeout;
     if (error != 0) {  // EIO, ENODEV: the sensor stopped or went away

@@ -13,6 +13,15 @@ namespace {
 
 using Lock = std::lock_guard<std::recursive_mutex>;
 
+/// Of a group or data set; not good() where there is none.
+Hdf5Handle attribute_of(const Hdf5Handle& file, const std::string& object,
+                        const std::string& name) {
+    const Hdf5Library& h5 = hdf5();
+    const Hdf5Handle opened{h5.H5Gopen2(file.id(), object.c_str(), H5P_DEFAULT), h5.H5Gclose};
+    if (!opened.good() || h5.H5Aexists(opened.id(), name.c_str()) <= 0) return {};
+    return {h5.H5Aopen(opened.id(), name.c_str(), H5P_DEFAULT), h5.H5Aclose};
+}
+
 }  // namespace
 
 Hdf5File::Hdf5File(const std::string& path) : path_(path) {
@@ -69,9 +78,8 @@ std::vector<double> Hdf5File::number_attributes(const std::string& object,
                                                 const std::string& name) const {
     const Lock lock{hdf5_mutex()};
     const Hdf5Library& h5 = hdf5();
-    const Hdf5Handle opened{h5.H5Gopen2(file_.id(), object.c_str(), H5P_DEFAULT), h5.H5Gclose};
-    if (!opened.good() || h5.H5Aexists(opened.id(), name.c_str()) <= 0) return {};
-    const Hdf5Handle attribute{h5.H5Aopen(opened.id(), name.c_str(), H5P_DEFAULT), h5.H5Aclose};
+    const Hdf5Handle attribute = attribute_of(file_, object, name);
+    if (!attribute.good()) return {};
     const Hdf5Handle space{h5.H5Aget_space(attribute.id()), h5.H5Sclose};
     constexpr hssize_t kMax = 16;
     const hssize_t count = space.good() ? h5.H5Sget_simple_extent_npoints(space.id()) : 0;
@@ -84,9 +92,8 @@ std::vector<double> Hdf5File::number_attributes(const std::string& object,
 std::string Hdf5File::text_attribute(const std::string& object, const std::string& name) const {
     const Lock lock{hdf5_mutex()};
     const Hdf5Library& h5 = hdf5();
-    const Hdf5Handle opened{h5.H5Gopen2(file_.id(), object.c_str(), H5P_DEFAULT), h5.H5Gclose};
-    if (!opened.good() || h5.H5Aexists(opened.id(), name.c_str()) <= 0) return {};
-    const Hdf5Handle attribute{h5.H5Aopen(opened.id(), name.c_str(), H5P_DEFAULT), h5.H5Aclose};
+    const Hdf5Handle attribute = attribute_of(file_, object, name);
+    if (!attribute.good()) return {};
     const Hdf5Handle type{h5.H5Aget_type(attribute.id()), h5.H5Tclose};
     const Hdf5Handle space{h5.H5Aget_space(attribute.id()), h5.H5Sclose};
     constexpr std::size_t kLongest = 256;
