@@ -47,6 +47,7 @@ Snapshot Counters::snapshot() const {
     s.event_windows = bin.event_windows.value();
     s.silent_windows = bin.silent_windows.value();
     s.merged_windows = bin.merged_windows.value();
+    s.window_events = bin.window_events.value();
     s.begin = from_us(std::int64_t(bin.begin_us.value()));
     s.window = {from_us(std::int64_t(bin.window_begin_us.value())),
                 from_us(std::int64_t(bin.window_end_us.value()))};

@@ -35,6 +35,7 @@ struct Snapshot {
     SlicerCounters slicing;
     std::uint64_t event_windows = 0, silent_windows = 0;  ///< silent: of those, without events
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep --latency
+    std::uint64_t window_events = 0;   ///< in event windows: behind filters, and in what was asked
     SensorTime begin{};                ///< of the first event window; valid where event_windows > 0
     Window window{};                   ///< the newest event window
 
@@ -74,8 +75,8 @@ struct Counters {
         std::array<Counter, kDamageReasons> damaged;
         Counter flicker_millihertz, last_flicker_millihertz, flicker_events;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;
-        Counter event_windows, silent_windows, merged_windows, begin_us, window_begin_us,
-            window_end_us;
+        Counter event_windows, silent_windows, merged_windows, window_events, begin_us,
+            window_begin_us, window_end_us;
         LatencyHistogram work;
     } bin;
     struct alignas(64) {

@@ -72,6 +72,7 @@ void Pipeline::bin_one(const CutWindow& event_window, VoxelGrid& grid) {
         counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.event_windows.add();
     counters_.bin.silent_windows.add(event_window.events.empty() ? 1 : 0);
+    counters_.bin.window_events.add(event_window.events.size());
     counters_.bin.window_begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.window_end_us.set(std::uint64_t(to_us(event_window.window.end)));
     counters_.bin.work.record(Clock::now() - begun);

@@ -1,6 +1,8 @@
 // Text from files, cameras and command lines, made safe to show on a terminal.
 #pragma once
 
+#include "src/io/output_paths.h"
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdio>
@@ -22,7 +24,7 @@ std::string json_text(const nlohmann::ordered_json& json, int indent = 2);
 
 /// Where a table for people goes: to standard error where standard output is for the same as data.
 inline std::FILE* table_beside(const std::string& data) {
-    return data == "-" ? stderr : stdout;
+    return is_standard_output(data) ? stderr : stdout;
 }
 
 }  // namespace eventide::app

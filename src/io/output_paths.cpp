@@ -46,6 +46,10 @@ bool names_open_file(const fs::path& path) {
     return descriptor_named(path).has_value();
 }
 
+bool is_standard_output(const fs::path& path) {
+    return descriptor_named(path) == STDOUT_FILENO;
+}
+
 bool create_folder(const fs::path& path) {
     std::error_code error;
     const bool created = fs::create_directories(path, error);

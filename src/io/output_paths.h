@@ -26,6 +26,9 @@ bool create_folder(const std::filesystem::path& path);
 /// Which one names_open_file() means: what was written to it before, by whomever, stays.
 std::optional<int> descriptor_named(const std::filesystem::path& path);
 
+/// "-", /dev/stdout or /dev/fd/1.
+bool is_standard_output(const std::filesystem::path& path);
+
 /// The Error (usage) for a file that is not to be replaced.
 Error existing_file(const std::string& name);
 

@@ -94,6 +94,7 @@ TEST(Pipeline, AsksForFramesAtTheirTimesWhateverTheEventsDo) {
     EXPECT_EQ(s.skipped_frames, 0U);
     EXPECT_EQ(s.latency.count, s.frames);
     EXPECT_EQ(s.encoded, s.event_windows);
+    EXPECT_EQ(s.window_events, 3000U);
     EXPECT_EQ(to_us(s.newest_frame), line.sink.seen.back().t_us);
 }
 

@@ -25,6 +25,22 @@ TEST_F(Commands, InfoDescribesAModel) {
     EXPECT_EQ(Json::parse(eventide({"info", model(), "--json"}).output)["bins"], "2");
 }
 
+TEST_F(Commands, InfoKnowsAModelAndAStateByTheirContent) {
+    std::filesystem::copy_file(model(), temp_ / "model.bin");
+    const Result words = eventide({"info", "model.bin"});
+    EXPECT_EQ(words.exit_code, 0) << words.error;
+    EXPECT_EQ(words.output, eventide({"info", model()}).output);
+    ASSERT_EQ(
+        eventide({"run", recording(), "--duration", "20ms", "--out", "null", "--state-out", "a.st"})
+            .exit_code,
+        0);
+    const Result state = eventide({"info", "a.st"});
+    EXPECT_EQ(state.exit_code, 3);
+    EXPECT_NE(state.error.find("a.st: expected a recording or a model, found a saved state"),
+              std::string::npos)
+        << state.error;
+}
+
 TEST_F(Commands, InfoDescribesAModelByTheNameThatRunsGiveIt) {
     const Result small = eventide({"info", "small"});
     EXPECT_EQ(small.exit_code, 0) << small.error;

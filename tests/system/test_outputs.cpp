@@ -77,6 +77,12 @@ TEST_F(Outputs, TwoOutputsAreNotOneFile) {
     expect_refused({"run", "rec.aedat4", "--out", "-", "--events-out", "text:/dev/stdout"},
                    "--events-out", "--out -");
     expect_refused({"evaluate", "rec.aedat4", "--json", "x", "--csv", "x"}, "--json x", "--csv x");
+    expect_refused({"evaluate", "rec.aedat4", "--json", "-", "--calibrated", "-"},
+                   "--calibrated -: --json - has standard output; expected another file");
+    expect_refused({"evaluate", "rec.aedat4", "--json", "-", "--csv", "/dev/stdout"},
+                   "--csv /dev/stdout: is the same file as --json -");
+    expect_refused({"evaluate", "rec.aedat4", "--csv", "-", "--json", "/dev/fd/1"},
+                   "--csv -: is the same file as --json /dev/fd/1");
     expect_refused({"simulate", "--out", "a/", "--truth", "a/"}, "--out a/", "--truth a/");
 }
 
@@ -89,6 +95,20 @@ TEST_F(Outputs, StandardInputAndOutputAreFilesToo) {
     EXPECT_EQ(shell("eventide convert - rec.aedat4 --overwrite < rec.aedat4").exit_code, 2);
     EXPECT_EQ(shell("eventide convert rec.aedat4 - --to-format text >> rec.aedat4").exit_code, 2);
     EXPECT_TRUE(files() == before);
+}
+
+TEST_F(Outputs, NoTableIsWhereStandardOutputIsForAnOutput) {
+    ASSERT_EQ(
+        eventide({"evaluate", "rec.aedat4", "--calibrated", "cal", "--json", "scores"}).exit_code,
+        0);
+    for (const char* standard_output : {"-", "/dev/stdout", "/dev/fd/1"}) {
+        EXPECT_EQ(eventide({"evaluate", "rec.aedat4", "--calibrated", standard_output}).output,
+                  read_text(temp_ / "cal"))
+            << standard_output;
+        EXPECT_EQ(eventide({"evaluate", "rec.aedat4", "--json", standard_output}).output,
+                  read_text(temp_ / "scores"))
+            << standard_output;
+    }
 }
 
 TEST_F(Outputs, TexturesOfASimulationAreInputs) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide::test {
@@ -134,6 +135,20 @@ TEST_F(RunPart, TheFirstAndTheLastEventAreInTheirOwnFrames) {
         eventide({"run", "e.txt", "--from", "@200000", "--to", "@200000", "--out", "b/"}).exit_code,
         0);
     EXPECT_EQ(column(temp_ / "b/timestamps.csv", 2), (std::vector<long long>{200'000}));
+}
+
+TEST_F(RunPart, TheSummaryCountsTheEventsThatFiltersLeftInIt) {
+    write_text(temp_ / "e.txt", "8 8\n0.100000 1 2 1\n0.150000 3 4 0\n0.200000 5 6 1\n");
+    for (const auto& [filter, events] : {std::pair{"off", "2 events"}, {"auto", "1 event"}}) {
+        const Result result =
+            eventide({"run", "e.txt", "--to", "@150000", "--noise-filter", filter, "--lamp-flicker",
+                      "off", "--window", "50ms", "--fps", "frame", "--out", "a/", "--overwrite"});
+        EXPECT_NE(result.error.find(std::string{" from "} + events + " in "), std::string::npos)
+            << result.error;
+        int in_windows = 0;
+        for (const long long n : column(temp_ / "a/timestamps.csv", 5)) in_windows += int(n);
+        EXPECT_EQ(std::to_string(in_windows), std::string{events}.substr(0, 1));
+    }
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_F(WrongUsage, IsRefused) {
     expect(2, {"evaluate", recording(), "--calibrated", ""}, "--calibrated: expected FILE");
     // Before the figure is simulated, which takes minutes.
     expect(2, {"evaluate", "--figure", "spatial", "--figure", "events"}, "one or more recordings");
-    expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
+    expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "--csv -: --json - has");
     for (const char* other : {"spatial", "events"})
         expect(2, {"evaluate", recording(), "--figure", other, "--figure", "nothing"},
                "no figure is called 'nothing'");

@@ -9,10 +9,12 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/file_lock.h"
+#include "src/io/output_paths.h"
 
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -104,10 +106,6 @@ void EvaluateCommand::require_outputs_that_fit() const {
                         ": a factor found on frames that images corrected is not the model's; "
                         "expected --frames 0, found " +
                         std::to_string(given_images_));
-    if ((json_ == "-") + (csv_ == "-") + (frame_csv_ == "-") > 1)
-        throw Error(ErrorKind::usage,
-                    "evaluate: expected one of --json, --csv and --frame-csv on standard output, "
-                    "found more");
     if (evaluates()) return;
     for (const auto& [option, file] : {std::pair{"--json ", &json_},
                                        {"--csv ", &csv_},
@@ -179,9 +177,14 @@ void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const 
         if (!is_report_figure(figure)) write_plots(simulated_figure(figure, what, how));
 }
 
+/// One of the outputs, so that the table would be in the middle of it.
+bool EvaluateCommand::has_standard_output() const {
+    return std::ranges::any_of(std::array{&json_, &csv_, &frame_csv_, &calibrated_},
+                               [](const std::string* file) { return is_standard_output(*file); });
+}
+
 void EvaluateCommand::write(const EvaluateReport& report, const Signals& signals) const {
-    if (json_ != "-" && csv_ != "-" && frame_csv_ != "-")
-        std::cout << printable(text_table(report), Lines::keep);
+    if (!has_standard_output()) std::cout << printable(text_table(report), Lines::keep);
     write_result(json_, json(report) + "\n", overwrite_, signals);
     write_result(csv_, csv(report), overwrite_, signals);
     write_result(frame_csv_, frame_csv(report), overwrite_, signals);
@@ -225,10 +228,11 @@ void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFi
     files.reads("--model", how.model);
     files.reads("--lpips", lpips_);
     name_files("--images", images_, files);
-    for (const auto& [option, file] :
-         {std::pair{"--json", &json_}, {"--csv", &csv_}, {"--frame-csv", &frame_csv_}})
-        if (*file != "-") files.writes_when_done(option, *file);
-    files.writes_when_done("--calibrated", calibrated_);
+    for (const auto& [option, file] : {std::pair{"--json", &json_},
+                                       {"--csv", &csv_},
+                                       {"--frame-csv", &frame_csv_},
+                                       {"--calibrated", &calibrated_}})
+        files.writes_when_done(option, *file);
     name_plots(files);
 }
 

@@ -44,6 +44,7 @@ private:
     void write_plots(const std::vector<Plot>& plots) const;
     void write_report_figures(const EvaluateReport& report) const;
     void make_simulated_figures(const EvaluateSettings& how) const;
+    bool has_standard_output() const;
     void write(const EvaluateReport& report, const Signals& signals) const;
     void calibrate(const EvaluateReport& report, const EvaluateSettings& how) const;
 

@@ -12,12 +12,17 @@
 #include "src/core/number_text.h"
 #include "src/model/model_file.h"
 #include "src/model/model_metadata.h"
+#include "src/nn/safetensors.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 namespace eventide::app {
@@ -64,10 +69,28 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
     line("damaged", damage);
 }
 
+/// By its content: the length of a header, which is JSON (src/nn/safetensors.cpp).
+bool is_safetensors(const std::string& path) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none)) return false;  // a pipe is read once
+    const auto size = std::filesystem::file_size(path, none);
+    std::uint64_t header_bytes = 0;
+    std::array<char, sizeof header_bytes + 1> begin{};
+    std::ifstream file{path, std::ios::binary};
+    if (none || !file.read(begin.data(), begin.size())) return false;
+    std::memcpy(&header_bytes, begin.data(), sizeof header_bytes);  // little endian, as the machine
+    return begin.back() == '{' && header_bytes <= size - sizeof header_bytes;
+}
+
 }  // namespace
 
 /// What a model is, from its own metadata.
 int InfoCommand::describe_model(const std::filesystem::path& file) const {
+    if (const auto metadata = read_safetensors(file).metadata; metadata.contains("format"))
+        if (metadata.at("format") == "eventide-state")
+            throw Error(ErrorKind::input, file.string() +
+                                              ": expected a recording or a model, found a saved "
+                                              "state, as --state-in of run takes");
     const Model model = load_model(file);
     std::size_t weights = 0;
     for (const auto& [name, tensor] : model.weights) weights += tensor.values.size();
@@ -105,7 +128,7 @@ SettingTable InfoCommand::settings() {
 }
 
 int InfoCommand::run(Program& program) {
-    if (file_.ends_with(".safetensors")) return describe_model(file_);
+    if (file_.ends_with(".safetensors") || is_safetensors(file_)) return describe_model(file_);
     // As of --model; a file of that name comes first.
     if (const auto model = found_model(file_); !model.empty() && !std::filesystem::exists(file_))
         return describe_model(model);

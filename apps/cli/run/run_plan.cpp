@@ -82,6 +82,10 @@ Span resumed_span(const RunSettings& settings, Span span, SensorTime t) {
         const SensorTime end = begin + *settings.duration;
         span.end = settings.to ? std::min(times_of(settings).time_of(*settings.to), end) : end;
     }
+    if (!settings.from && span.end && *span.end < begin)
+        throw Error(ErrorKind::usage, option + ": expected --to after the state's time, " +
+                                          std::to_string(to_us(t)) + " us, found " +
+                                          std::to_string(to_us(*span.end)) + " us");
     return span;
 }
 

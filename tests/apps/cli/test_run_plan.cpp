@@ -1,6 +1,7 @@
 // What a user leaves open is chosen as the documentation says.
 #include "apps/cli/run/run_plan.h"
 #include "src/core/error.h"
+#include "tests/support/error_of.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
@@ -167,6 +168,26 @@ TEST(RunPlan, ADurationCountsFromWhereARunGoesOn) {
     EXPECT_EQ(to_us(*resumed().end), 9'000'000) << "of the frames asked for";
     settings.duration.reset();
     EXPECT_EQ(to_us(*resumed().end), 9'000'000);
+}
+
+TEST(RunPlan, AnEndBeforeTheTimeOfAStateIsSaidToBe) {
+    const test::TempFolder temp;
+    test::write_text(temp / "e.txt", "8 8\n5.0 1 1 1\n9.5 2 2 0\n");
+    RunSettings settings;
+    settings.source = temp / "e.txt";
+    settings.state_in = "state.safetensors";
+    const auto resumed = [&] {
+        return resumed_span(settings, span_of(settings, false), from_us(7'000'000));
+    };
+    const std::string message =
+        "--state-in state.safetensors: expected --to after the state's time, 7000000 us, found "
+        "7000000 us";
+    settings.to = parse_time_point("2s");
+    EXPECT_EQ(test::error_of(resumed, ErrorKind::usage), message);
+    settings.duration = SensorDuration{1'000'000};
+    EXPECT_EQ(test::error_of(resumed, ErrorKind::usage), message);
+    settings.to = parse_time_point("@7000001");
+    EXPECT_EQ(to_us(*resumed().end), 7'000'001);
 }
 
 TEST(RunPlan, SpansCountFromTheFirstEvent) {

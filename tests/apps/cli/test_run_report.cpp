@@ -113,12 +113,12 @@ TEST(RunReport, ARunWithoutFramesSaysWhy) {
     EXPECT_NE(why_no_frames(none).find("between --from and --to"), std::string::npos);
     none.events = none.filtered_events = 10;
     none.slicing = {};
-    EXPECT_NE(why_no_frames(none).find("filters took every event"), std::string::npos);
+    EXPECT_NE(why_no_frames(none).find("filters left no event (--noise-filter"), std::string::npos);
     none.slicing.after_end = 4;
-    none.filtered_events = 6;
-    EXPECT_NE(why_no_frames(none).find("filters took every event between --from and --to"),
+    none.filtered_events = 5;  // and one held by a filter to the end
+    EXPECT_NE(why_no_frames(none).find("filters left no event between --from and --to"),
               std::string::npos);
-    none.filtered_events = 5;
+    none.window_events = 1;
     EXPECT_NE(why_no_frames(none).find("--fps"), std::string::npos);
 }
 
@@ -142,9 +142,20 @@ TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
     EXPECT_TRUE(lost_data(busy()));
 }
 
+TEST(RunReport, TheSummaryCountsTheEventsInEventWindows) {
+    // Of 9000 parsed, 5000 are a filter's and 1900 lie behind --to.
+    Snapshot part;
+    part.frames = 3;
+    part.events = 9000;
+    part.filtered_events = 5000;
+    part.slicing.after_end = 1900;
+    part.window_events = 2100;
+    EXPECT_TRUE(summary_text(part, {}).starts_with("3 frames from 2.1 k events in"));
+}
+
 TEST(RunReport, OneIsOneFrame) {
     Snapshot one;
-    one.frames = one.events = 1;
+    one.frames = one.window_events = 1;
     EXPECT_TRUE(summary_text(one, {}).starts_with("1 frame from 1 event in"));
     EXPECT_TRUE(summary_text({}, {}).starts_with("0 frames from 0 events in"));
     EXPECT_EQ(counted(1, "IMU sample"), "1 IMU sample");

@@ -169,6 +169,8 @@ TEST(StreamState, WhatIsNotKeptIsRefused) {
     EXPECT_THAT(refused([](RunSettings& s) { s.frames = CameraFrames::automatic; }),
                 HasSubstr("--frames ignore"));
     EXPECT_THAT(refused([](RunSettings& s) { s.colour = true; }), HasSubstr("--colour"));
+    EXPECT_THAT(refused([](RunSettings& s) { s.adjust.auto_hdr = true; }),
+                HasSubstr("--states-out: expected frames without --auto-hdr"));
     EXPECT_THAT(refused([](RunSettings& s) { s.filter = {"region:0,0,8,8"}; }),
                 HasSubstr("no --filter, found 'region:0,0,8,8'"));
     EXPECT_THAT(refused([](RunSettings& s) { s.hot_pixels = "learn"; }), HasSubstr("--hot-pixels"));

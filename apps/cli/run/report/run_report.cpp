@@ -61,12 +61,6 @@ std::string losses_text(const Snapshot& now) {
            std::to_string(now.skipped_frames) + "  damaged " + std::to_string(now.damaged.total());
 }
 
-/// Between --from (less its warm-up) and --to: what is parsed goes some way beyond.
-std::uint64_t events_within(const Snapshot& end) {
-    const std::uint64_t outside = end.slicing.before_begin + end.slicing.after_end;
-    return end.events > outside ? end.events - outside : 0;
-}
-
 }  // namespace
 
 bool lost_data(const Snapshot& end) {
@@ -76,7 +70,9 @@ bool lost_data(const Snapshot& end) {
 
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     const double seconds = progress.elapsed.count();
-    const std::uint64_t events = events_within(end);
+    // Those between --from (less its warm-up) and --to, behind the filters; what is parsed goes
+    // beyond.
+    const std::uint64_t events = end.window_events;
     std::string text = counted(end.frames, "frame") + " from " + short_count(double(events)) +
                        text_of(" %s in %.2f s", events == 1 ? "event" : "events", seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
@@ -105,13 +101,15 @@ std::string why_no_frames(const Snapshot& end) {
     if (end.events == 0)
         return "no frame: no event was read; eventide info shows how many the recording holds, "
                "and their times";
+    // The slicer counts behind the filters: where those that they took lie is not known.
     const std::uint64_t outside = cut.before_begin + cut.after_end;
-    if (end.filtered_events > 0 && end.filtered_events + outside == end.events)
-        return std::string{"no frame: filters took every event"} +
+    if (end.window_events == 0 && end.filtered_events > 0)
+        return std::string{"no frame: filters left no event"} +
                (outside > 0 ? " between --from and --to" : "") +
                " (--noise-filter, --hot-pixels, --filter)";
-    if (cut.before_begin == end.events) return "no frame: all events lie before --from";
-    if (outside == end.events) return "no frame: no event lies between --from and --to";
+    if (end.window_events == 0 && outside > 0)
+        return cut.after_end == 0 ? "no frame: all events lie before --from"
+                                  : "no frame: no event lies between --from and --to";
     return "no frame: what was asked for is shorter than the time between two frames (--fps)";
 }
 

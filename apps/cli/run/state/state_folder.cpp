@@ -75,9 +75,11 @@ void check_stream_state(const RunSettings& settings, const std::string& option, 
     if (settings.frames != CameraFrames::ignore)
         refuse("--frames ignore; what the camera's images corrected is not kept");
     if (settings.colour) refuse("frames without --colour");
+    if (settings.adjust.auto_hdr)
+        refuse("frames without --auto-hdr; the range of those before is not kept");
     if (!settings.filter.empty())
         refuse("no --filter, found '" + settings.filter.front() +
-               "'; what it remembers is not kept");
+               "'; a state keeps nothing of filters that --filter names");
     if (settings.hot_pixels == "learn") refuse("another --hot-pixels than learn");
 }
 
