@@ -16,7 +16,9 @@ protected:
         for (std::int64_t t = 1000; t <= 100'000; t += 50) {
             const eventide_event event{t, std::uint16_t(t / 2000), std::uint16_t(t / 50 % 48), 1};
             EXPECT_EQ(eventide_push(reconstructor_, &event, 1), EVENTIDE_OK);
-            if (t == 50'000) EXPECT_EQ(eventide_mark_gap(reconstructor_), EVENTIDE_OK);
+            if (t == 50'000) {
+                EXPECT_EQ(eventide_mark_gap(reconstructor_), EVENTIDE_OK);
+            }
         }
         EXPECT_EQ(eventide_finish(reconstructor_, &end), EVENTIDE_OK);
         std::string frames;

@@ -76,7 +76,7 @@ TEST_P(PipelineResume, GridsAreThoseOfOneRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Run, PipelineResume, testing::Bool(),
-                         [](const auto& info) { return info.param ? "Threaded" : "Sequential"; });
+                         [](const auto& each) { return each.param ? "Threaded" : "Sequential"; });
 
 }  // namespace
 }  // namespace eventide
