@@ -221,8 +221,8 @@ TEST(ResidualPyramid, VarianceIsTheModelsWhereNothingIsKnownNow) {
     EXPECT_GT(left(32, 2), .7F) << "but for the coarsest bands";
     EXPECT_LT(left(32, 61), .1F);
     pyramid.know(constant(size, size, 0));
-    for (const float v : expect(pyramid, constant(size, size, .2F)).variance.values())
-        EXPECT_NEAR(v, 1, 1e-5);
+    const Expectation nothing = expect(pyramid, constant(size, size, .2F));
+    for (const float v : nothing.variance.values()) EXPECT_NEAR(v, 1, 1e-5);
 }
 
 /// Frames at the end of a window and at the begin of the next are alike.
