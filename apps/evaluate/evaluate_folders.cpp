@@ -68,15 +68,15 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
     EvaluateReport report;
     report.subject = "folders " + frames.string() + " against " + references.string();
     if (lpips) report.lpips_name = lpips->name();
-    const auto is_alone = [&](const fs::path& folder, const fs::path& other) {
+    const auto is_left_out = [&](const fs::path& folder, const fs::path& other) {
         if (fs::is_directory(other)) return false;
         if (warn && !images_in(folder).empty())
             warn(folder.string() + ": is left out, as there is no folder " + other.string());
         return true;
     };
-    for (const fs::path& name : folders_in(frames)) is_alone(frames / name, references / name);
+    for (const fs::path& name : folders_in(frames)) is_left_out(frames / name, references / name);
     for (const fs::path& name : folders_in(references)) {
-        if (is_alone(references / name, frames / name)) continue;
+        if (is_left_out(references / name, frames / name)) continue;
         const auto images = images_in(frames / name), truths = images_in(references / name);
         if (!images.empty() || !truths.empty())
             report.sequences.push_back(compare(name.string(), images, truths, judge));

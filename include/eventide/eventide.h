@@ -3,11 +3,10 @@
  * sizes and coordinates are pixels with the origin at the top left.
  *
  * Functions that can fail return an eventide_status; eventide_error_message() then says what was
- * expected and what was found. Nothing is thrown. Any of them may return EVENTIDE_FAILED (too
- * little memory) and EVENTIDE_USAGE (NULL where its comment does not allow it); its comment names
- * the others. A handle is used by one thread at a time, different handles by as many as there are.
- * NULL for a handle is refused, but may be closed, and is what `*opened` becomes where nothing is
- * opened. */
+ * expected and what was found. Nothing is thrown. Any may return EVENTIDE_FAILED (too little
+ * memory) and EVENTIDE_USAGE (NULL where it is not allowed); the others its comment names. A handle
+ * is used by one thread at a time, different ones by as many as there are. NULL for a handle is
+ * refused, but may be closed, and is what `*opened` becomes where nothing is opened. */
 #ifndef EVENTIDE_EVENTIDE_H
 #define EVENTIDE_EVENTIDE_H
 
@@ -182,8 +181,7 @@ EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstruct
 EVENTIDE_API eventide_status eventide_reset(eventide_reconstructor* reconstructor);
 
 /** What the network remembers of the scene: bytes, valid until the next call with the same
- * reconstructor, for eventide_restore() of any with the same model, sensor size and
- * self_ensemble. */
+ * reconstructor, for eventide_restore() of any of that model, sensor size and self_ensemble. */
 EVENTIDE_API eventide_status eventide_state(eventide_reconstructor* reconstructor,
                                             const void** bytes, size_t* size);
 /** A new stream, with what eventide_state() told. EVENTIDE_INPUT where it is none, or that of

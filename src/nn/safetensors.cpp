@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -218,6 +219,18 @@ TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string
     check_cover(extents, data.size(), name);
     for (const Extent& extent : extents) copy_values(data, extent, name, file.tensors[extent.name]);
     return file;
+}
+
+bool is_safetensors(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    const auto size = std::filesystem::file_size(path, error);
+    std::array<char, kLengthBytes + 1> begin{};
+    std::ifstream file{path, std::ios::binary};
+    if (error || !file.read(begin.data(), begin.size())) return false;
+    std::uint64_t header_size = 0;
+    std::memcpy(&header_size, begin.data(), kLengthBytes);
+    return begin.back() == '{' && header_size <= size - kLengthBytes;
 }
 
 TensorFile read_safetensors(const std::filesystem::path& path) {

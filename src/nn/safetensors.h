@@ -41,6 +41,10 @@ std::string shape_text(std::span<const std::int64_t> shape);
 /// number.
 TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name);
 
+/// Whether a file begins as one: with the length of a header that fits, and JSON. False for a pipe,
+/// which can be read but once.
+bool is_safetensors(const std::filesystem::path& path);
+
 /// As parse_safetensors, from a file.
 TensorFile read_safetensors(const std::filesystem::path& path);
 

@@ -17,12 +17,8 @@
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 namespace eventide::app {
@@ -67,19 +63,6 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
     std::string damage = whole(summary.damaged.total());
     if (summary.damaged.total() > 0) add_to_list(damage, damage_text(summary.damaged));
     line("damaged", damage);
-}
-
-/// By its content: the length of a header, which is JSON (src/nn/safetensors.cpp).
-bool is_safetensors(const std::string& path) {
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none)) return false;  // a pipe is read once
-    const auto size = std::filesystem::file_size(path, none);
-    std::uint64_t header_bytes = 0;
-    std::array<char, sizeof header_bytes + 1> begin{};
-    std::ifstream file{path, std::ios::binary};
-    if (none || !file.read(begin.data(), begin.size())) return false;
-    std::memcpy(&header_bytes, begin.data(), sizeof header_bytes);  // little endian, as the machine
-    return begin.back() == '{' && header_bytes <= size - sizeof header_bytes;
 }
 
 }  // namespace
